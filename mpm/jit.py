@@ -1,0 +1,71 @@
+"""How mpm compiles: `kernel` (njit with the house's flags) and `role` (a function chosen by the type of its first argument).
+
+Numba's on-disk cache does not notice that a callee in another file changed, so the cache folder is named after a hash of
+every source file of the package and of the versions that matter. It is private (0700). Everything compiled goes through here.
+"""
+
+import functools
+import hashlib
+import os
+import platform
+import tempfile
+from pathlib import Path
+
+import numba
+import numpy as np
+from numba import config, njit
+from numba.extending import overload
+
+# No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
+FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
+
+
+def source_hash() -> str:
+    """Hash of every Python file of the package: which physics made a result."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """`$MPM_CACHE_DIR`, else the user's cache folder; a private temporary folder where neither can be written."""
+    versions = f"{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}"
+    name = "numba-" + hashlib.sha256(f"{source_hash()}-{versions}".encode()).hexdigest()[:16]
+    base = os.environ.get("MPM_CACHE_DIR") or os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "mpm")
+    folder = Path(base) / name
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="mpm-"))
+
+
+CACHE = cache_folder()
+config.CACHE_DIR = str(CACHE)
+
+
+def kernel(function=None, *, inline=False):
+    """Compile with the house's flags and cache on disk. `inline=True` for small functions that a kernel calls per particle."""
+    if function is None:
+        return functools.partial(kernel, inline=inline)
+    return njit(cache=True, **FLAGS, **({"forceinline": True} if inline else {}))(function)
+
+
+def role(stub):
+    """A function chosen by the type of its first argument, in Python and in compiled code alike.
+
+    `stub` gives name, argument names and docstring. A law registers itself with `@stub.register(Kind)`, `Kind` a
+    NamedTuple class, on a function with the same argument names and no annotations (Numba compares the signatures).
+    Kinds are types, values are run-time arguments: a sweep over values shares one compiled kernel.
+    """
+    laws = functools.singledispatch(stub)
+
+    @functools.wraps(stub)
+    def pick(*args):
+        return laws.registry.get(getattr(args[0], "instance_class", None))
+
+    overload(laws, jit_options=FLAGS)(pick)
+    return laws
