@@ -20,19 +20,24 @@ from numba.extending import overload
 FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
 
 
-def source_hash() -> str:
-    """Hash of every Python file of the package: which physics made a result."""
+ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots"}  # rooms that compiled code cannot reach (tests/test_layers.py)
+
+
+def source_hash(without: frozenset | set = frozenset()) -> str:
+    """Hash of every Python file of the package, less the folders named: which source made a result."""
     digest = hashlib.sha256()
     root = Path(__file__).parent
     for path in sorted(root.rglob("*.py")):
-        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
+        place = path.relative_to(root)
+        if place.parts[0] not in without:
+            digest.update(str(place).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def cache_folder() -> Path:
     """`$MPM_CACHE_DIR`, else the user's cache folder; a private temporary folder where neither can be written."""
     versions = f"{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}"
-    name = "numba-" + hashlib.sha256(f"{source_hash()}-{versions}".encode()).hexdigest()[:16]
+    name = "numba-" + hashlib.sha256(f"{source_hash(ABOVE_THE_KERNELS)}-{versions}".encode()).hexdigest()[:16]
     base = os.environ.get("MPM_CACHE_DIR") or os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "mpm")
     folder = Path(base) / name
     try:
