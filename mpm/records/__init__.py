@@ -1,0 +1,6 @@
+"""Records: what results are called, and how they reach the disk.
+
+variables.py   the one table of names, symbols, units, dimensions and long names (a leaf: any room may import it)
+netcdf.py      groups of labelled arrays to the bytes of a NetCDF-4 file, and such bytes to disk, whole or not at all
+point.py       a Run and its provenance to one point file, and back
+"""

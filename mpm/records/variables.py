@@ -1,0 +1,144 @@
+"""The one table of what a dataset holds: name, symbol, units, dimensions, long name.
+
+`VARIABLES`     dataset name -> Variable                       (`temperature_mean`)
+`OBSERVABLES`   what a config may list under `output.observables` (`temperature.mean`); dots become underscores in the dataset
+`describe`      a dataset name -> Variable, names with a probe in them too (`temperature_crust`, `time_to_centre_95_degC`)
+`Threshold`     `time_to.<probe>.<value>_<unit>` taken apart
+
+Imports nothing of the package and nothing heavy. To add a quantity: one line in TABLE.
+"""
+
+import re
+from dataclasses import dataclass, replace
+
+POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
+STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
+OK, FAILED, TIMEOUT, KILLED, DIVERGED, SKIPPED, PENDING = range(7)
+AXES = ("x", "y", "z", "r")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A quantity in a dataset. `dims` is the group that it lives in: point, series, grid or particles."""
+
+    name: str
+    symbol: str
+    units: str
+    dims: str
+    long_name: str
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """`time_to.centre.95_degC`: when probe `centre` first reaches `kelvin`, rising or falling."""
+
+    probe: str
+    value: float
+    unit: str
+    kelvin: float
+
+
+TABLE = [
+    # series, observables of a config
+    ("temperature.mean", "θ", "K", SERIES, "mean temperature, weighted with heat capacity"),
+    ("temperature.min", "θ", "K", SERIES, "lowest temperature"),
+    ("temperature.max", "θ", "K", SERIES, "highest temperature"),
+    ("heat.total", "H", "J", SERIES, "heat content above the reference temperature"),
+    ("heat.exchanged", "Q", "J", SERIES, "heat taken in through surfaces since the start"),
+    ("heat.ledger", "", "J", SERIES, "heat content gained less heat taken in: what the method lost"),
+    ("mass.total", "m", "kg", SERIES, "total mass"),
+    ("energy.kinetic", "", "J", SERIES, "kinetic energy"),
+    ("energy.elastic", "", "J", SERIES, "elastic energy"),
+    ("energy.total", "", "J", SERIES, "kinetic, elastic and gravitational energy"),
+    ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
+    ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
+    ("volume.total", "V", "m3", SERIES, "total volume"),
+    ("J.min", "J", "1", SERIES, "smallest volume ratio det F"),
+    ("J.max", "J", "1", SERIES, "largest volume ratio det F"),
+    ("pressure.mean", "p", "Pa", SERIES, "mean pressure, weighted with volume"),
+    ("strain.max", "ε", "1", SERIES, "largest principal Hencky strain"),
+    # errors against the exact solution that a config names
+    ("error_l2", "", "K", SERIES, "root-mean-square error against the exact solution"),
+    ("error_max", "", "K", SERIES, "largest error against the exact solution"),
+    # one number a point
+    ("status", "", "1", POINT, "outcome of the point"),
+    ("error", "", "1", POINT, "why the point is not ok"),
+    ("run_id", "", "1", POINT, "hash of the point's config"),
+    ("steps", "", "1", POINT, "time steps taken"),
+    ("wall_time", "", "s", POINT, "wall time of the run"),
+    ("attempts", "", "1", POINT, "times the point was started"),
+    # coordinates
+    ("time", "t", "s", SERIES, "time"),
+    ("x", "x", "m", GRID, "first coordinate"),
+    ("y", "y", "m", GRID, "second coordinate"),
+    ("z", "z", "m", GRID, "height"),
+    ("r", "r", "m", GRID, "distance from the axis"),
+    ("snapshot", "t", "s", GRID, "time of the snapshot"),
+    # fields of particles; temperature, velocity and density on the grid too
+    ("position", "x", "m", PARTICLES, "position"),
+    ("velocity", "v", "m/s", PARTICLES, "velocity"),
+    ("temperature", "θ", "K", PARTICLES, "temperature"),
+    ("density", "ρ", "kg/m3", GRID, "density"),
+    ("pressure", "p", "Pa", PARTICLES, "pressure"),
+    ("J", "J", "1", PARTICLES, "volume ratio det F"),
+    ("stress_mises", "", "Pa", PARTICLES, "von Mises stress"),
+    ("mass", "m", "kg", PARTICLES, "mass"),
+    ("body", "", "1", PARTICLES, "number of the body, in the config's order"),
+    ("row_size", "", "1", PARTICLES, "number of particles in this snapshot"),
+    ("row_start", "", "1", PARTICLES, "where this snapshot begins in obs"),
+    # a direction each
+    *((f"velocity_{a}", f"v{a}", "m/s", GRID, f"velocity along {a}") for a in AXES),
+    *((f"momentum.{a}", "p", "kg m/s", SERIES, f"momentum along {a}") for a in AXES),
+    *((f"position.mean_{a}", a, "m", SERIES, f"centre of mass along {a}") for a in AXES),
+    *((f"position.min_{a}", a, "m", SERIES, f"smallest {a} of the material") for a in AXES),
+    *((f"position.max_{a}", a, "m", SERIES, f"largest {a} of the material") for a in AXES),
+    *((f"extent.{a}", "", "m", SERIES, f"extent along {a}") for a in AXES),
+]
+
+FIELDS_GRID = ("temperature", "velocity", "density")
+FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
+OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
+
+_THRESHOLD = re.compile(r"time_to[._](?P<probe>[A-Za-z]\w*?)[._](?P<value>-?\d+(?:[._]\d+)?)_(?P<unit>degC|K)")
+_AT_PROBE = ("temperature", "velocity")
+
+
+def dataset_name(observable: str) -> str:
+    """`temperature.mean` -> `temperature_mean`."""
+    return observable.replace(".", "_")
+
+
+VARIABLES = {dataset_name(row[0]): Variable(dataset_name(row[0]), *row[1:]) for row in TABLE}
+
+
+def threshold(name: str) -> Threshold | None:
+    """Take `time_to.centre.95_degC` (or its dataset name) apart; None for any other name."""
+    match = _THRESHOLD.fullmatch(name)
+    if match is None:
+        return None
+    value, unit = float(match["value"].replace("_", ".")), match["unit"]
+    return Threshold(match["probe"], value, unit, value + 273.15 if unit == "degC" else value)
+
+
+def observable_exists(name: str) -> bool:
+    """Whether a config may list `name`. Whether its probe exists is for the config to say."""
+    return name in OBSERVABLES or threshold(name) is not None
+
+
+def describe(name: str) -> Variable:
+    """The variable of a dataset name; KeyError with the name if there is none."""
+    if name in VARIABLES:
+        return VARIABLES[name]
+    if found := threshold(name):
+        unit = "°C" if found.unit == "degC" else "K"
+        return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
+    field, _, probe = name.partition("_")
+    if field in _AT_PROBE and probe:
+        return replace(VARIABLES[field], name=name, dims=SERIES, long_name=f"{field} at {probe.replace('_', ' ')}")
+    raise KeyError(name)
+
+
+def fits(observable: str, dimension: int | str) -> bool:
+    """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
+    axis = observable[-1] if observable[-2:-1] in (".", "_") else ""
+    return axis not in AXES or axis in {0: "", 1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}[dimension]
