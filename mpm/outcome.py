@@ -1,0 +1,49 @@
+"""How a run can end. A failure is a value with advice, never an exception: a map of failures is an ordinary sweep.
+
+Compiled loops report the integer; everything else reads `Outcome`.
+"""
+
+from dataclasses import dataclass
+
+COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET = range(10)
+
+KINDS = {
+    COMPLETED: ("completed", "", ""),
+    NON_FINITE: ("non_finite", "a value is not finite", "lower `time.safety`, or look for a parameter that is out of scale"),
+    INVERTED: ("inverted", "det F <= 0", "lower `time.safety`; if it stays, the load inverts the material: a stiffer body, slower walls or a finer grid"),
+    OVERSTRETCHED: ("overstretched", "dt |grad v| > 1/2 or J outside (1e-3, 1e3)", "lower `time.safety`; a body that tears or collapses has left what the model covers"),
+    LEFT_GRID: ("left_grid", "a particle left the grid", "enlarge `grid.size`, or close the side with a wall"),
+    RETURN_MAP: ("return_map", "the return map did not converge", "check M, p0 and eta: p0 within 1e-3..1e3, K dt/eta within 1e-12..1e12"),
+    STEP_UNDERFLOW: ("step_underflow", "the stable step fell below 1/256 of the first", "the scene stiffens or speeds up without bound: look at velocity.max and J.max"),
+    ENERGY_GROWTH: ("energy_growth", "energy grows without a source", "lower `time.safety`"),
+    MAX_PRINCIPLE: ("max_principle", "a temperature left the bounds of its data", "lower `time.safety` or `method.heat_step`"),
+    BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """`kind` is one of the names of `KINDS`; `message` says where and when, `advice` what to do."""
+
+    kind: str
+    message: str = ""
+    advice: str = ""
+
+    @property
+    def ok(self) -> bool:
+        return self.kind == "completed"
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.message}" if self.message else self.kind
+
+
+def outcome(code: int, particle: int = -1, time: float | None = None, step: int = -1, detail: str = "") -> Outcome:
+    """The outcome of a code, with the particle, time [s] and step at which it was seen."""
+    kind, what, advice = KINDS[code]
+    place = [f"particle {particle}"] if particle >= 0 else []
+    text = " at ".join([" ".join(x for x in (what, detail) if x), *place])
+    if time is not None:
+        text += f", t = {time:.6g} s"
+    if step >= 0:
+        text += f", step {step}"
+    return Outcome(kind, text if code else "", advice)

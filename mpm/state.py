@@ -1,0 +1,134 @@
+"""What a scene is made of: named tuples of arrays, with only the fields that the scene's physics names.
+
+Absence is an object: a body without heat carries `Isothermal()`, and nothing of heat is stored, compiled or computed.
+Layouts   D directions of the grid, N particles, K strain components: line xx yy zz; plane xx yy zz xy; volume xx yy zz xy yz xz
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mpm.outcome import Outcome
+
+PAD = 2  # nodes outside each face of the domain: one that the basis reaches, one to notice a leaver
+
+
+class Line(NamedTuple):
+    """One direction: uniaxial strain. Node i of an array lies at (i - PAD) h."""
+
+    h: float
+    n0: int
+
+
+class Plane(NamedTuple):
+    """Two directions x, y: plane strain."""
+
+    h: float
+    n0: int
+    n1: int
+
+
+class Axisymmetric(NamedTuple):
+    """Two directions r, z; everything per radian."""
+
+    h: float
+    n0: int
+    n1: int
+
+
+class Volume(NamedTuple):
+    """Three directions x, y, z."""
+
+    h: float
+    n0: int
+    n1: int
+    n2: int
+
+
+class Particles(NamedTuple):
+    """Mechanical state of one body."""
+
+    x: np.ndarray  # (N, D) position [m]
+    v: np.ndarray  # (N, D) velocity [m/s]
+    C: np.ndarray  # (N, D, D) affine velocity [1/s]
+    B: np.ndarray  # (N, K) elastic left Cauchy-Green tensor less the identity [-]
+    J: np.ndarray  # (N,) total volume ratio [-]
+    m: np.ndarray  # (N,) mass [kg]
+    V0: np.ndarray  # (N,) reference volume [m^D, axisymmetric m^3 per radian]
+
+
+class Thermal(NamedTuple):
+    """Thermal state of one body. Temperatures are stored less `zero`, so that float32 keeps small changes."""
+
+    theta: np.ndarray  # (N,) temperature less zero [K]
+    c: np.ndarray  # (N, D) affine part: temperature gradient [K/m]
+    F: np.ndarray  # (N, D, D) total deformation gradient in the grid's directions: carries the surface (Nanson)
+    zero: float  # [K]
+    kappa: Any  # law [W/(m K)]
+    alpha: Any  # law [J/(kg K)]
+
+
+class Surface(NamedTuple):
+    """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11)."""
+
+    owner: np.ndarray  # (S,) particle
+    area: np.ndarray  # (S, D) reference area times outward normal
+    offset: np.ndarray  # (S, D) reference offset from particle to the piece's centroid [m]
+    beta: np.ndarray  # (S,) [W/(m2 K)]
+    outside: np.ndarray  # (S,) ambient temperature less zero [K]
+
+
+class Isothermal(NamedTuple):
+    """No heat."""
+
+
+class NoExpansion(NamedTuple):
+    """No thermal stress."""
+
+
+class Expansion(NamedTuple):
+    """Thermal stress -gamma (Theta - reference) 1."""
+
+    gamma: float  # [Pa/K]
+    shift: float  # zero - reference [K]: theta + shift = Theta - Theta_0
+
+
+class NoHeating(NamedTuple):
+    """Deformation does not heat."""
+
+
+class Heating(NamedTuple):
+    """Elastic heating along the adiabat and the share of dissipation that becomes heat (physics.md 4, step 7)."""
+
+    Gamma: float  # gamma/(R0 alpha), zero where elastic heating is absent [-]
+    fraction: float  # chi_d [-]
+
+
+class Body(NamedTuple):
+    """One body: a contiguous set of particles with one law each."""
+
+    particles: Particles
+    thermal: Any  # Thermal or Isothermal
+    surface: Any  # Surface or Isothermal
+    elastic: Any
+    flow: Any
+    expansion: Any
+    heating: Any
+
+
+@dataclass
+class Run:
+    """The result of one point."""
+
+    outcome: Outcome
+    times: np.ndarray
+    series: dict[str, np.ndarray]
+    finals: dict[str, float]
+    axes: dict[str, np.ndarray] = field(default_factory=dict)
+    snapshot_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    grid: dict[str, np.ndarray] = field(default_factory=dict)
+    particles: list[dict[str, np.ndarray]] = field(default_factory=list)
+    steps: int = 0
+    wall_time: float = 0.0
+    facts: dict = field(default_factory=dict)
