@@ -1,0 +1,59 @@
+"""Boundaries: what the faces of the domain do to nodal fields.
+
+Walls stand on grid lines. A slip or stick wall is a mirror: what particles put on the ghost node outside is folded on to its image
+inside, and nodal velocities are continued outside by reflection, so a linear field is exact up to the wall (setting wall nodes to
+zero alone would flatten it there). A contact wall only stops nodes at and behind it from moving outwards.
+
+May use   mpm.jit, mpm.state                          May not  see particles or laws
+To add    a kind: a number here, its rule in walls.py, its name in config
+"""
+
+from mpm.jit import role
+from mpm.state import Axisymmetric, Line, Plane, Volume
+
+SLIP, STICK, CONTACT = 0, 1, 2
+KINDS = {"slip": SLIP, "stick": STICK, "contact": CONTACT}
+
+
+@role
+def extents(space):
+    """Nodes in three directions, one where the space has no such direction."""
+    raise TypeError(f"no extents for {type(space).__name__}")
+
+
+@role
+def directions(space):
+    """D, a constant at compile time."""
+    raise TypeError(f"no directions for {type(space).__name__}")
+
+
+@extents.register(Line)
+def _(space):
+    return space.n0, 1, 1
+
+
+@extents.register(Plane)
+@extents.register(Axisymmetric)
+def _(space):
+    return space.n0, space.n1, 1
+
+
+@extents.register(Volume)
+def _(space):
+    return space.n0, space.n1, space.n2
+
+
+@directions.register(Line)
+def _(space):
+    return 1
+
+
+@directions.register(Plane)
+@directions.register(Axisymmetric)
+def _(space):
+    return 2
+
+
+@directions.register(Volume)
+def _(space):
+    return 3

@@ -1,0 +1,116 @@
+"""Slip, stick and contact walls on the faces of the domain.
+
+With a ghost node g outside a wall and its image i inside: fold  m_i += m_g, p_i += s p_g  with s = -1 for the components that the wall
+holds (the normal one; all of them at a stick wall) and +1 for the others; the wall's own node carries v = 0 in the held components; unfold  v_g = s v_i.
+This is the mirrored body written down, so it conserves mass, and heat (s = +1: insulated) exactly.
+Contact: v_n = max(v_n, 0) inwards at and behind the wall; the body may leave.
+Fails when: a body at a contact wall is sampled by fewer than two particles a cell (it sinks in by up to half a cell).
+"""
+
+from mpm.boundary import CONTACT, STICK
+from mpm.jit import kernel
+from mpm.state import PAD
+
+
+@kernel
+def held(kind, axis, component):
+    """Whether a wall across `axis` holds `component`."""
+    return kind == STICK or component == axis
+
+
+@kernel
+def fold(nodes, components, shape, box, walls):
+    """Fold `components` vector components, and every further column (mass) evenly, of the ghost planes on to their images. Grows `box` to the images."""
+    for axis in range(3):
+        if shape[axis] == 1:
+            continue
+        for side in range(2):
+            if walls[axis, side] == CONTACT:
+                continue
+            wall = PAD if side == 0 else shape[axis] - 1 - PAD
+            out = -1 if side == 0 else 1
+            ghost = wall + out
+            if not (box[axis, 0] <= ghost < box[axis, 1]):
+                continue
+            box[axis, 0], box[axis, 1] = min(box[axis, 0], wall - out), max(box[axis, 1], wall - out + 1)
+            mirror_plane(nodes, components, shape, box, axis, ghost, wall - out, walls[axis, side], True)
+
+
+@kernel
+def unfold(nodes, components, shape, box, walls):
+    """Continue nodal values to the ghost planes by reflection."""
+    for axis in range(2, -1, -1):
+        if shape[axis] == 1:
+            continue
+        for side in range(2):
+            if walls[axis, side] == CONTACT:
+                continue
+            wall = PAD if side == 0 else shape[axis] - 1 - PAD
+            out = -1 if side == 0 else 1
+            if box[axis, 0] <= wall + out < box[axis, 1]:
+                mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], False)
+
+
+@kernel
+def mirror_plane(nodes, components, shape, box, axis, ghost, image, kind, add):
+    """Add the ghost plane to its image (`add`), or copy the image to the ghost plane."""
+    a, b = (axis + 1) % 3, (axis + 2) % 3
+    stride = (shape[1] * shape[2], shape[2], 1)
+    for i in range(box[a, 0], box[a, 1]):
+        for j in range(box[b, 0], box[b, 1]):
+            base = i * stride[a] + j * stride[b]
+            g, n = base + ghost * stride[axis], base + image * stride[axis]
+            for c in range(nodes.shape[1]):
+                sign = -1.0 if c < components and held(kind, axis, c) else 1.0
+                if add:
+                    nodes[n, c] += sign * nodes[g, c]
+                else:
+                    nodes[g, c] = sign * nodes[n, c]
+
+
+@kernel
+def impose(nodes, components, shape, box, walls):
+    """Hold the velocity components that each wall holds, on its own plane; behind a contact wall, none moves outwards."""
+    stride = (shape[1] * shape[2], shape[2], 1)
+    for axis in range(3):
+        if shape[axis] == 1:
+            continue
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        for side in range(2):
+            kind = walls[axis, side]
+            wall = PAD if side == 0 else shape[axis] - 1 - PAD
+            first, last = (wall, wall + 1)
+            if kind == CONTACT:
+                first, last = (0, wall + 1) if side == 0 else (wall, shape[axis])
+            for k in range(max(first, box[axis, 0]), min(last, box[axis, 1])):
+                for i in range(box[a, 0], box[a, 1]):
+                    for j in range(box[b, 0], box[b, 1]):
+                        n = i * stride[a] + j * stride[b] + k * stride[axis]
+                        for c in range(components):
+                            if kind == CONTACT:
+                                if c == axis:
+                                    nodes[n, c] = max(nodes[n, c], 0.0) if side == 0 else min(nodes[n, c], 0.0)
+                            elif held(kind, axis, c):
+                                nodes[n, c] = 0.0
+
+
+@kernel
+def clear(nodes, shape, box):
+    """Zero the nodes of the box, then empty the box."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                for c in range(nodes.shape[1]):
+                    nodes[n, c] = 0.0
+    empty(shape, box)
+
+
+@kernel
+def empty(shape, box):
+    """A box that the first particle will grow; directions that the space lacks span their one node."""
+    for axis in range(3):
+        if shape[axis] == 1:
+            box[axis, 0], box[axis, 1] = 0, 1
+        else:
+            box[axis, 0], box[axis, 1] = shape[axis], 0
