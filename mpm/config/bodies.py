@@ -1,0 +1,100 @@
+"""Bodies: a shape filled with a material, with its state at the start."""
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import model_validator
+from pydantic_core import core_schema
+
+from mpm.config.base import Kind, Menu, Model, doc, problem
+from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, Quantity, Temperature, Velocity
+
+Point = tuple[Coordinate, ...]
+
+
+class Box(Kind):
+    """Interval, rectangle or block between two corners; in two dimensions it may be turned about its centre."""
+
+    kind: ClassVar[str] = "box"
+    lower: Point = doc(description="corner with the smallest coordinates")
+    upper: Point = doc(description="corner with the largest coordinates")
+    angle: Angle = doc(0.0, description="rotation about the centre, counter-clockwise (two dimensions only)")
+
+    @model_validator(mode="after")
+    def order(self) -> "Box":
+        """Upper above lower in every direction."""
+        for index, (low, high) in enumerate(zip(self.lower, self.upper, strict=False)):
+            if high <= low:
+                raise problem("box", "the upper corner must lie above the lower one in every direction", f"above {low:g} [m]", at=("upper", index))
+        return self
+
+
+class Ball(Kind):
+    """Interval in 1-D, disc in 2-D, sphere in axisymmetric (centre on the axis) and 3-D."""
+
+    kind: ClassVar[str] = "ball"
+    centre: Point
+    radius: Length
+
+
+class Cylinder(Kind):
+    """Cylinder about the axis (axisymmetric, base [0, z]) or about the last coordinate (3-D, base = centre of the lower face)."""
+
+    kind: ClassVar[str] = "cylinder"
+    radius: Length
+    height: Length
+    base: Point = doc(description="centre of the lower face")
+
+
+class Ring(Kind):
+    """Two-dimensional ring between two radii."""
+
+    kind: ClassVar[str] = "ring"
+    centre: Point
+    inner: Length
+    outer: Length
+
+    @model_validator(mode="after")
+    def order(self) -> "Ring":
+        """Outer radius above the inner one."""
+        if self.outer <= self.inner:
+            raise problem("ring", "the outer radius must exceed the inner one", f"above {self.inner:g} [m]", at=("outer",))
+        return self
+
+
+class Polygon(Kind):
+    """Polygon in two dimensions or in the (r, z) plane, without crossings; either orientation."""
+
+    kind: ClassVar[str] = "polygon"
+    vertices: tuple[Point, ...] = doc(min_length=3)
+
+
+class Spin:
+    """Annotation of an angular velocity: one number about the origin of the plane, three in 3-D."""
+
+    quantity = Quantity("rad/s", "angular velocity")
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
+        number = self.quantity.__get_pydantic_json_schema__(schema, handler)
+        return {"anyOf": [*number["anyOf"], {"type": "array", "items": number}], "description": number["description"]}
+
+    def validate(self, value: Any) -> float | tuple[float, ...]:
+        """A float, or a tuple of floats."""
+        return tuple(map(self.quantity.validate, value)) if isinstance(value, list | tuple) else self.quantity.validate(value)
+
+
+SHAPES = (Box, Ball, Cylinder, Ring, Polygon)
+
+
+class Body(Model):
+    """A shape of one material, with temperature and velocity at the start."""
+
+    shape: Annotated[Box | Ball | Cylinder | Ring | Polygon, Menu("shape", *SHAPES)]
+    material: str = doc(description="a name under materials")
+    temperature: Temperature = doc(293.15, description="temperature at the start")
+    velocity: tuple[Velocity, ...] | None = doc(None, description="velocity at the start, one number a direction; zero unless given")
+    angular_velocity: Annotated[float | tuple[AngularVelocity, ...], Spin()] | None = doc(
+        None, description="rotation about the body's centre of mass at the start: a number in two dimensions, three in 3-D"
+    )

@@ -1,0 +1,99 @@
+"""Experiment: one config, validated."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+from pydantic import PrivateAttr, model_validator
+
+from mpm.config.base import Kind, Model, doc
+from mpm.config.bodies import Body
+from mpm.config.boundary import Surface, Wall
+from mpm.config.laws import Constant
+from mpm.config.materials import Material
+from mpm.config.numerics import Clock, Grid, Method
+from mpm.config.output import Exact, Output
+from mpm.config.quantities import Acceleration
+from mpm.config.sweep import Sweep
+
+PHYSICS_VERSION = 1
+NOT_KEYED = ("title", "sweep", "smoke")  # cannot change the result of a point
+
+
+class Experiment(Model):
+    """A scene, how it is computed, what is recorded, and what varies. All numbers in SI."""
+
+    title: str = ""
+    grid: Grid
+    bodies: dict[str, Body] = doc(min_length=1, description="bodies by name")
+    materials: dict[str, Material] = doc(min_length=1, description="materials by name")
+    surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
+    walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
+    gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
+    time: Clock
+    method: Method = Method()
+    output: Output = Output()
+    exact: Exact | None = doc(None, description="exact solution that the run is compared with")
+    sweep: Sweep | None = doc(None, description="what varies")
+    smoke: dict[str, Any] | None = doc(None, description="path: value, applied by --smoke to make the run coarse and short")
+
+    _source: str = PrivateAttr("")
+    _path: Path | None = PrivateAttr(None)
+
+    @model_validator(mode="after")
+    def derived(self) -> "Experiment":
+        """Defaults that follow from other sections: the cadence of the series, the zeros of the offset."""
+        if self.output.every is None:
+            self.__dict__["output"] = self.output.model_copy(update={"every": self.time.end / 100})
+        if not self.method.offset:
+            self.__dict__["method"] = self.method.model_copy(update={"offset": (0.0,) * self.grid.directions})
+        return self
+
+    @property
+    def source(self) -> str:
+        """The config's text, verbatim."""
+        return self._source
+
+    @property
+    def path(self) -> Path | None:
+        """The config's file; None for a dict."""
+        return self._path
+
+    @property
+    def name(self) -> str:
+        """The file's stem, or `experiment`."""
+        return self._path.stem if self._path else "experiment"
+
+    @property
+    def moving(self) -> bool:
+        """Whether any body is elastic, so that there is mechanics at all."""
+        return any(self.materials[body.material].elastic is not None for body in self.bodies.values())
+
+    def resolved(self) -> dict[str, Any]:
+        """Everything, defaults too, as SI numbers and plain containers; `load` reads it back to the same experiment."""
+        return plain(self)
+
+    def key(self) -> dict[str, Any]:
+        """What determines a point's result, without defaults: equal for 1, 1.0 and "1000 mm", blind to title, sweep and smoke."""
+        key = {name: value for name, value in plain(self, defaults=False).items() if name not in NOT_KEYED}
+        if not any(self.method.offset):
+            key["method"] = {name: value for name, value in key["method"].items() if name != "offset"}
+        return key
+
+
+def plain(value: Any, defaults: bool = True) -> Any:
+    """A model as plain containers: kinds under their name, constants as numbers, infinity as text (JSON has none)."""
+    if isinstance(value, float):
+        return value if value != math.inf else ".inf"
+    if isinstance(value, Constant):
+        return plain(value.value)
+    if isinstance(value, Model):
+        fields = type(value).model_fields
+        items = ((name, getattr(value, name)) for name in fields)
+        inner = {name: plain(item, defaults) for name, item in items if defaults or item != fields[name].default}
+        return {value.kind: inner} if isinstance(value, Kind) else inner
+    if isinstance(value, dict):
+        return {name: plain(item, defaults) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, defaults) for item in value]
+    return value

@@ -1,0 +1,105 @@
+"""Laws of temperature: the few kinds by which a material parameter may depend on temperature T [K].
+
+Constant   v                                                        written as a number, or `{constant: v}`
+Table      values over temperatures, linear or PCHIP between them, constant outside
+Bump       base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2))     latent heat as apparent specific heat; `heat` is the integral of the bump
+Logistic   low + (high - low)/(1 + exp(-(T - at)/width))
+
+After validation a law is always one of these classes: dispatch with `isinstance` (each parameter has subclasses of its own that carry its unit).
+"""
+
+import functools
+from dataclasses import replace
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import create_model, model_validator
+
+from mpm.config.base import Choice, Kind, Menu, doc, problem
+from mpm.config.quantities import Quantity, Temperature, TemperatureDifference
+
+
+class Constant(Kind):
+    """The same value at every temperature."""
+
+    kind: ClassVar[str] = "constant"
+    value: float
+
+    @model_validator(mode="before")
+    @classmethod
+    def number(cls, value: Any) -> Any:
+        """`{constant: 0.35}`: the value lies right under the kind's name."""
+        return {"value": value} if not isinstance(value, dict) else value
+
+
+class Table(Kind):
+    """Values over increasing temperatures, constant outside the table."""
+
+    kind: ClassVar[str] = "table"
+    temperature: tuple[Temperature, ...] = doc(description="increasing temperatures", min_length=2)
+    value: tuple[float, ...]
+    interpolation: Annotated[Literal["linear", "pchip"], Choice()] = doc("linear", description="between the entries: straight lines, or monotone cubics")
+
+    @model_validator(mode="after")
+    def shape(self) -> "Table":
+        """As many values as temperatures, temperatures increasing."""
+        if len(self.temperature) != len(self.value):
+            raise problem("table", f"{len(self.temperature)} temperatures but {len(self.value)} values", "lists of the same length", at=("value",))
+        for index, (low, high) in enumerate(zip(self.temperature, self.temperature[1:], strict=False)):
+            if high <= low:
+                raise problem("table", "temperatures must increase", "each above the one before", at=("temperature", index + 1))
+        return self
+
+
+class Bump(Kind):
+    """base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2)): latent heat spread over a few kelvin."""
+
+    kind: ClassVar[str] = "bump"
+    base: float
+    heat: float
+    at: Temperature = doc(description="temperature of the peak")
+    width: TemperatureDifference = doc(description="standard deviation of the bump")
+
+
+class Logistic(Kind):
+    """low + (high - low)/(1 + exp(-(T - at)/width)): a smooth step."""
+
+    kind: ClassVar[str] = "logistic"
+    low: float
+    high: float
+    at: Temperature = doc(description="temperature of the middle of the step")
+    width: TemperatureDifference = doc(description="e-folding width of the step")
+
+
+class Law(Menu):
+    """Annotation of a parameter that is a number or a function of temperature; every value in it has the parameter's unit and bounds."""
+
+    def __init__(self, quantity: Quantity):
+        value = Annotated[float, quantity]
+        # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
+        area = Annotated[float, Quantity(f"{quantity.unit}*K" if quantity.unit else "K", f"{quantity.name} times kelvin", least=0, difference=True)]
+        tag = quantity.name.title().replace(" ", "").replace("-", "")
+        self.constant = create_model(f"Constant{tag}", __base__=Constant, value=(value, ...))
+        table = create_model(f"Table{tag}", __base__=Table, value=(tuple[value, ...], ...))
+        bump = create_model(f"Bump{tag}", __base__=Bump, base=(value, ...), heat=(area, ...))
+        logistic = create_model(f"Logistic{tag}", __base__=Logistic, low=(value, ...), high=(value, ...))
+        super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic)
+        self.quantity = quantity
+
+    def check(self, value: Any) -> Any:
+        """A number or text with a unit becomes a Constant; a mapping names its kind."""
+        if isinstance(value, dict | Kind):
+            return super().check(value)
+        if isinstance(value, str) and value in self.kinds:
+            return super().check(value)
+        return self.constant.model_construct(value=self.quantity.validate(value))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
+        kinds = super().__get_pydantic_json_schema__(schema, handler)
+        number = self.quantity.__get_pydantic_json_schema__(schema, handler)
+        return {"anyOf": [*number["anyOf"], {"oneOf": kinds["oneOf"]}], "description": f"{number['description']}: a number or a function of temperature"}
+
+
+@functools.cache
+def law(unit: str, name: str, **bounds: Any) -> Any:
+    """The type of a parameter that may depend on temperature: `kappa: law("W/m/K", "conductivity", least=0)`."""
+    return Annotated[Constant | Table | Bump | Logistic, Law(replace(Quantity(unit, name), difference=True, **bounds))]

@@ -1,0 +1,106 @@
+"""Materials: density and the physics that a material has. A section that is absent is physics that does not exist."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import model_validator
+
+from mpm.config.base import Choice, Kind, Menu, Model, doc, problem
+from mpm.config.laws import law
+from mpm.config.quantities import Density, Fraction, Modulus, PerKelvin, Pressure, Quantity, StressPerKelvin, Temperature
+
+PoissonRatio = Annotated[float, Quantity("", "Poisson ratio", above=-1, most=0.4999)]
+PAIRS = (("E", "nu"), ("lam", "mu"), ("K", "mu"))
+
+
+class Hencky(Kind):
+    """Hencky elasticity: Kirchhoff stress 2 mu eps + lam tr(eps), eps the logarithmic strain. Exactly one pair of moduli: E nu, lam mu, or K mu."""
+
+    kind: ClassVar[str] = "hencky"
+    E: law("Pa", "Young's modulus", above=0) | None = doc(None, description="Young's modulus E")
+    nu: PoissonRatio | None = doc(None, description="Poisson ratio")
+    lam: Pressure | None = doc(None, description="first Lamé constant")
+    mu: Modulus | None = doc(None, description="shear modulus, second Lamé constant")
+    K: Modulus | None = doc(None, description="bulk modulus")
+
+    @model_validator(mode="after")
+    def pair(self) -> "Hencky":
+        """One pair of moduli, no more and no less, with a positive bulk modulus."""
+        given = tuple(key for key in ("E", "nu", "lam", "K", "mu") if getattr(self, key) is not None)
+        if given not in PAIRS:
+            raise problem("pair", f"two moduli are needed, found {' '.join(given) or 'none'}", ["E and nu", "lam and mu", "K and mu"])
+        if self.lam is not None and self.lam + 2 * self.mu / 3 <= 0:
+            raise problem("pair", "the bulk modulus lam + 2 mu/3 must be positive", f"lam above {-2 * self.mu / 3:g} [Pa]", at=("lam",))
+        return self
+
+
+class Ellipse(Kind):
+    """Viscoplastic flow outside the ellipse p^2/p0^2 + q^2 = M^2, with overstress viscosity eta (0: rate-independent)."""
+
+    kind: ClassVar[str] = "ellipse"
+    M: law("Pa", "yield stress", above=0) = doc(description="von Mises stress at yield without pressure")
+    p0: law("", "aspect ratio", above=0) = doc(description="aspect ratio of the ellipse: the yield pressure is p0 M")
+    eta: law("Pa*s", "viscosity", least=0) = doc(description="viscosity of the overstress")
+    map: Annotated[Literal["radial"], Choice()] = doc("radial", description="distance from the ellipse that drives the flow")
+
+
+class Fourier(Kind):
+    """Heat flux -kappa grad T and specific heat alpha."""
+
+    kind: ClassVar[str] = "fourier"
+    kappa: law("W/m/K", "heat conductivity", least=0) = doc(description="heat conductivity")
+    alpha: law("J/kg/K", "specific heat", above=0) = doc(description="specific heat capacity")
+
+
+class LinearExpansion(Kind):
+    """Thermal stress from the linear expansion coefficient: gamma = 3 K coefficient."""
+
+    kind: ClassVar[str] = "linear"
+    coefficient: PerKelvin = doc(description="linear thermal expansion coefficient")
+    reference: Temperature = doc(293.15, description="temperature without thermal stress")
+
+
+class ModulusExpansion(Kind):
+    """Thermal stress from the stress-temperature modulus gamma."""
+
+    kind: ClassVar[str] = "modulus"
+    gamma: StressPerKelvin = doc(description="stress-temperature modulus gamma")
+    reference: Temperature = doc(293.15, description="temperature without thermal stress")
+
+
+class SourceExpansion(Kind):
+    """Thermal stress from the supplement's c: gamma = c lam."""
+
+    kind: ClassVar[str] = "source"
+    c: PerKelvin = doc(description="the supplement's coupling coefficient")
+    reference: Temperature = doc(293.15, description="temperature without thermal stress")
+
+
+Expansion = Annotated[LinearExpansion | ModulusExpansion | SourceExpansion, Menu("expansion law", LinearExpansion, ModulusExpansion, SourceExpansion)]
+
+
+class ElasticHeating(Model):
+    """Heating and cooling by elastic change of volume, along the adiabat."""
+
+
+class DissipationHeating(Model):
+    """Heating by plastic dissipation."""
+
+    fraction: Fraction = doc(1.0, description="part of the dissipated work that becomes heat")
+
+
+class Heating(Model):
+    """How deformation heats: each part is on when it is written, `elastic: {}`, `dissipation: {}`."""
+
+    elastic: ElasticHeating | None = None
+    dissipation: DissipationHeating | None = None
+
+
+class Material(Model):
+    """A material: density, and a section for each physics it has."""
+
+    density: Density = doc(description="mass density of the undeformed material")
+    elastic: Annotated[Hencky, Menu("elastic law", Hencky)] | None = doc(None, description="without it the body is rigid and does not move")
+    flow: Annotated[Ellipse, Menu("flow law", Ellipse)] | None = doc(None, description="viscoplastic flow; needs elastic")
+    heat: Annotated[Fourier, Menu("heat law", Fourier)] | None = doc(None, description="without it no heat is stored or conducted")
+    expansion: Expansion | None = doc(None, description="thermal stress; needs elastic and heat")
+    heating: Heating | None = doc(None, description="heat from deformation; needs elastic and heat")

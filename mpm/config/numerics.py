@@ -1,0 +1,87 @@
+"""Grid, time and method: how a scene is computed."""
+
+from typing import Annotated, ClassVar, Literal
+
+from mpm.config.base import Choice, Kind, Menu, Model, doc
+from mpm.config.quantities import Fraction, Length, Positive, Quantity, Time, TimeOrAuto, Whole
+
+Dimension = Annotated[Literal[0, 1, 2, "axisymmetric", 3], Choice()]
+DIRECTIONS = {0: 0, 1: 1, 2: 2, "axisymmetric": 2, 3: 3}
+Offset = Annotated[float, Quantity("", "offset in cells", least=-0.5, most=0.5)]
+
+
+class Grid(Model):
+    """The domain [0, size] and its cells."""
+
+    dimension: Dimension = doc(description="0, 1, 2 (plane strain), axisymmetric (r, z) or 3")
+    size: tuple[Length, ...] = doc(description="extent of the domain, one length a direction")
+    cell: Length = doc(description="edge of a cell")
+    basis: Annotated[Literal["quadratic"], Choice()] = doc("quadratic", description="B-splines of the grid")
+
+    @property
+    def directions(self) -> int:
+        """Number of coordinates: 2 in axisymmetric scenes."""
+        return DIRECTIONS[self.dimension]
+
+
+class Clock(Model):
+    """When the run ends and how it steps."""
+
+    end: Time = doc(description="time at the end")
+    step: TimeOrAuto = doc("auto", description="time step; auto takes the smallest of all limits")
+    safety: Positive = doc(1.0, description="multiplies the automatic step; above 1 goes past the limits")
+
+
+class Apic(Kind):
+    """Affine particle-in-cell."""
+
+    kind: ClassVar[str] = "apic"
+
+
+class Flip(Kind):
+    """Increments, with a fraction of PIC."""
+
+    kind: ClassVar[str] = "flip"
+    blend: Fraction = doc(0.0, description="fraction of PIC")
+
+
+class Pic(Kind):
+    """Particle-in-cell: values from the grid; dissipative."""
+
+    kind: ClassVar[str] = "pic"
+
+
+class AutoHeat(Kind):
+    """Whichever of the integrators suits the laws."""
+
+    kind: ClassVar[str] = "auto"
+
+
+class Implicit(Kind):
+    """Consistent mass and L-stable implicit steps, chosen by an error estimate."""
+
+    kind: ClassVar[str] = "implicit"
+    order: Annotated[Literal[2, 4], Choice()] = doc(4, description="order in time")
+    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] = doc(1e-4, description="relative error a step")
+
+
+class Explicit(Kind):
+    """Lumped mass and stabilised explicit steps."""
+
+    kind: ClassVar[str] = "explicit"
+
+
+Transfer = Annotated[Apic | Flip | Pic, Menu("transfer", Apic, Flip, Pic)]
+
+
+class Method(Model):
+    """The numerical method."""
+
+    transfer: Transfer = doc(Apic(), description="transfer of velocity between particles and grid")
+    temperature: Transfer = doc(Apic(), description="transfer of temperature")
+    gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
+    precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
+    particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
+    heat_step: TimeOrAuto = doc("auto", description="time step of heat in moving bodies")
+    offset: tuple[Offset, ...] = doc((), description="shift of bodies and probes against the grid lines, in cells, one a direction; zero unless given")
+    rigid: Annotated[AutoHeat | Implicit | Explicit, Menu("integrator", AutoHeat, Implicit, Explicit)] = doc(AutoHeat(), description="heat in rigid bodies")

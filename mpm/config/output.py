@@ -1,0 +1,41 @@
+"""What a run writes, and the exact solution it is compared with."""
+
+from typing import Annotated, ClassVar
+
+from mpm.config.base import Kind, Menu, Model, doc
+from mpm.config.bodies import Point
+from mpm.config.quantities import Time
+
+
+class Snapshots(Model):
+    """Fields on the grid and on particles, at times 0, every, 2 every, ..., end."""
+
+    every: Time
+    grid: tuple[str, ...] = doc((), description="fields on the grid")
+    particles: tuple[str, ...] = doc((), description="fields of the particles")
+
+
+class Output(Model):
+    """Cadence of the series, probes, observables and snapshots."""
+
+    every: Time = doc(None, description="time between samples of the series; end/100 unless given", validate_default=False)
+    probes: dict[str, Point] = doc({}, description="points that are followed, by name")
+    observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
+    snapshots: Snapshots | None = None
+
+
+class RobinSlab(Kind):
+    """Series solution of a slab with Robin exchange."""
+
+    kind: ClassVar[str] = "robin_slab"
+    body: str | None = doc(None, description="the body that is the slab; the only one unless given")
+
+
+class RobinCylinder(Kind):
+    """Series solution of a cylinder with Robin exchange."""
+
+    kind: ClassVar[str] = "robin_cylinder"
+    body: str | None = doc(None, description="the body that is the cylinder; the only one unless given")
+
+
+Exact = Annotated[RobinSlab | RobinCylinder, Menu("exact solution", RobinSlab, RobinCylinder)]

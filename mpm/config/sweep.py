@@ -1,0 +1,104 @@
+"""What varies: `sweep: {axes, zip, sample, points, where}`. Values are checked against the parameter they are for, when the points are planned."""
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+from pydantic_core import core_schema
+
+from mpm.config.base import Kind, Menu, Model, doc, problem
+from mpm.config.quantities import Whole
+
+Count = Annotated[int, Whole("count", 1, 10**9)]
+Seed = Annotated[int, Whole("seed", 0, 2**63 - 1)]
+
+
+class Range:
+    """Annotation of a range: `[first, last]` or, for even steps of the logarithm, `{log: [first, last]}`; with `count` a third entry."""
+
+    def __init__(self, *words: str, entries: int):
+        self.words = words
+        self.entries = entries
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
+        spaced = {"type": "array", "minItems": self.entries, "maxItems": self.entries}
+        plain = spaced if self.entries == 2 else {"type": "array", "minItems": 1}
+        return {"anyOf": [plain, *({"type": "object", "properties": {word: spaced}, "required": [word], "additionalProperties": False} for word in self.words)]}
+
+    @property
+    def allowed(self) -> list[str]:
+        """The forms, as a user writes them."""
+        entries = ", ".join(["first", "last", "count"][: self.entries])
+        plain = "[first, last]" if self.entries == 2 else "a list of values"
+        return [plain, *(f"{{{word}: [{entries}]}}" for word in self.words)]
+
+    def validate(self, value: Any) -> Any:
+        """A tuple of values, or a mapping of one word to a tuple of the right length."""
+        if isinstance(value, list | tuple):
+            if not value:
+                raise problem("axis", "the list is empty, so there would be no points", self.allowed)
+            if self.entries == 2 and len(value) != 2:
+                raise problem("axis", f"a range has two ends, found {len(value)} values", self.allowed)
+            return tuple(value)
+        if not isinstance(value, dict):
+            raise problem("axis", "expected a list of values or a range", self.allowed)
+        unknown = [key for key in value if key not in self.words]
+        if unknown:
+            raise problem("axis", f"unknown kind of range {unknown[0]!r}", list(self.words), at=(unknown[0],))
+        if len(value) != 1:
+            raise problem("axis", "expected exactly one kind of range", self.allowed)
+        ((word, entries),) = value.items()
+        if not isinstance(entries, list | tuple) or len(entries) != self.entries:
+            raise problem("axis", f"expected {self.entries} entries", self.allowed, at=(word,))
+        if self.entries == 3 and (isinstance(entries[2], bool) or not isinstance(entries[2], int) or entries[2] < 1):
+            raise problem("axis", "the count must be a whole number, at least 1", self.allowed, at=(word, 2))
+        return {word: tuple(entries)}
+
+
+Axis = Annotated[Any, Range("linear", "log", entries=3)]
+Span = Annotated[Any, Range("log", entries=2)]
+Values = Annotated[tuple[Any, ...], Field(min_length=1)]
+
+
+class Design(Kind):
+    """A sample of several parameters at once; the same seed gives the same points."""
+
+    count: Count = doc(description="number of points")
+    seed: Seed = 0
+    ranges: dict[str, Span] = doc(min_length=1, description="parameter: [first, last] or {log: [first, last]}")
+
+
+class Sobol(Design):
+    """Scrambled Sobol sequence; a longer sample with the same seed begins with the same points."""
+
+    kind: ClassVar[str] = "sobol"
+
+
+class Latin(Design):
+    """Latin hypercube."""
+
+    kind: ClassVar[str] = "latin"
+
+
+class Halton(Design):
+    """Scrambled Halton sequence; a longer sample with the same seed begins with the same points."""
+
+    kind: ClassVar[str] = "halton"
+
+
+class Uniform(Design):
+    """Independent uniform numbers."""
+
+    kind: ClassVar[str] = "uniform"
+
+
+class Sweep(Model):
+    """The points of a sweep: the product of all axes, zips, the sample and the list of points, without what `where` drops."""
+
+    axes: dict[str, Axis] = doc({}, description="parameter: list of values, {linear: [first, last, count]} or {log: [first, last, count]}")
+    zip: tuple[dict[str, Values], ...] = doc((), description="parameters that move together, one dimension an entry")
+    sample: Annotated[Sobol | Latin | Halton | Uniform, Menu("design", Sobol, Latin, Halton, Uniform)] | None = None
+    points: tuple[dict[str, Any], ...] = doc((), description="an explicit list of points")
+    where: str | None = doc(None, description="a condition on swept parameters; points that fail it are skipped")

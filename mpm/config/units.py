@@ -1,0 +1,70 @@
+"""Text with a unit to SI floats, by pint; the only module that loads pint.
+
+convert("190 degC", "K", "temperature")                          463.15
+convert("1.5 degC", "K", "temperature difference", difference=True)   1.5
+convert("2 mm", "m", "length")                                   0.002
+
+Numbers and exponents are read here and only the bare unit reaches pint, so that no text can make it compute.
+"""
+
+import difflib
+import functools
+import re
+from typing import Any
+
+TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+UNIT = re.compile(r"(?:[^\W\d]|[°%Ωµμ*/^ ·().²³⁻¹]|(?:\*\*|\^)\s*-?\s*\d{1,2}(?!\d)|^1(?=/)){1,60}")
+KNOWN = ("m cm mm um km K degC degF s ms min h day kg g m/s mm/s Pa kPa MPa GPa bar J kJ W kW N W/m/K W/m**2/K J/kg/K kJ/kg/K kg/m**3 g/cm**3 "
+         "J/kg Pa*s mPa*s 1/K Pa/K rad deg rad/s rpm m/s**2 %").split()  # fmt: skip
+OFFSET = {"degree_Celsius": "delta_degree_Celsius", "degree_Fahrenheit": "delta_degree_Fahrenheit"}
+NAMES = {"[length]": "length", "[time]": "time", "[temperature]": "temperature", "[mass]": "mass", "dimensionless": "pure number",
+         "[mass] / [length] ** 3": "density", "[mass] / [length] / [time] ** 2": "pressure", "[length] / [time]": "velocity",
+         "[length] / [time] ** 2": "acceleration", "[length] ** 2": "area", "[length] ** 3": "volume", "1 / [time]": "rate",
+         "[length] * [mass] / [time] ** 3 / [temperature]": "heat conductivity", "[mass] / [temperature] / [time] ** 3": "heat-transfer coefficient",
+         "[length] ** 2 / [temperature] / [time] ** 2": "specific heat", "[mass] / [length] / [time]": "viscosity"}  # fmt: skip
+
+
+class UnitError(ValueError):
+    """Text that is no quantity of the wanted dimension."""
+
+    def __init__(self, message: str, suggestion: str = ""):
+        super().__init__(message)
+        self.suggestion = suggestion
+
+
+@functools.cache
+def registry() -> Any:
+    """pint's registry; 0.1 to 0.3 s, once."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@functools.lru_cache(4096)
+def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
+    """The number in `text` converted to `unit`; `difference` reads degC and degF as differences."""
+    found = TEXT.fullmatch(text)
+    if not found:
+        raise UnitError(f"{text!r} is not a {name}: it does not begin with a number")
+    number, given = float(found[1]), found[2]
+    if not given:
+        raise UnitError(f"{text!r} is text without a unit, not a {name}", suggestion=found[1])
+    if not UNIT.fullmatch(given):
+        raise UnitError(f"{given!r} is not a unit")
+    if re.search(r"(\^|\*\*)[^*^]*\d\s*(\^|\*\*)", given):
+        raise UnitError(f"{given!r} is not a unit: powers of powers")
+    units = registry()
+    try:
+        source = units.parse_units("1" + given if given[0] == "/" else given)
+    except Exception:  # pint lets through whatever its tokenizer and evaluator raise on broken text
+        near = difflib.get_close_matches(given, KNOWN, 1, 0.6)
+        raise UnitError(f"unknown unit {given!r}", suggestion=f'"{found[1]} {near[0]}"' if near else "") from None
+    if difference and str(source) in OFFSET:
+        source = units.parse_units(OFFSET[str(source)])
+    target = units.parse_units(unit or "dimensionless")
+    if source.dimensionality != target.dimensionality:
+        said = NAMES.get(str(source.dimensionality), str(source.dimensionality))
+        scale = f'"{found[1]} deg{given}"' if given in ("C", "F") and unit == "K" else ""
+        raise UnitError(f"{text!r} has the dimension of a {said}, but a {name} is expected", suggestion=scale)
+    # 36 * 0.001 is not 0.036: rounding makes "36 mm" and 0.036 the same run
+    return float(f"{units.Quantity(number, source).to(target).magnitude:.15g}")
