@@ -1,0 +1,256 @@
+"""Shapes: where a body is. Signed distance, bounds, and what a grid cuts out of it.
+
+Role   distance(x (N, d)) -> (N,) [m], negative inside;  bounds() -> (lower, upper);  moved(shift) -> the same shape elsewhere
+       cut(edges, order) -> (Quadrature, Surface): exact volume and surface points, cell by cell (mpm.scene.cut)
+Space  coordinates of the scene: (x), (x, y), (r, z) or (x, y, z). Weights are plain lengths, areas, volumes: an axisymmetric caller multiplies by r,
+       which also takes away the part of a boundary that lies on the axis.
+To add a shape: a frozen dataclass with `pieces` (plane) or `cut`, one line in `KINDS`; tests/scene/test_cut.py ranges over the table.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mpm.scene import cut as cutting
+from mpm.scene.cut import Segment
+from mpm.scene.sphere import ball, circle
+
+Point = tuple[float, ...]
+
+
+def _point(values) -> Point:
+    return tuple(float(v) for v in np.atleast_1d(values))
+
+
+class Shape:
+    """What every shape shares."""
+
+    @property
+    def dimension(self) -> int:
+        return len(self.bounds()[0])
+
+    def inside(self, x: np.ndarray) -> np.ndarray:
+        return self.distance(x) < 0
+
+    def pieces(self):
+        """Boundary of a plane shape, the inside on the left."""
+        raise NotImplementedError(f"{type(self).__name__} is not a plane shape")
+
+    def cut(self, edges, order: int = 4):
+        if len(edges) != self.dimension:
+            raise ValueError(f"a shape in {self.dimension} directions, edges in {len(edges)}")
+        return cutting.plane(self.pieces(), self.distance, edges, order)
+
+
+@dataclass(frozen=True)
+class Box(Shape):
+    """Interval, rectangle or block from `lower` to `upper`, turned by `angle` [rad] about its centre (in the plane of the first two coordinates)."""
+
+    lower: Point
+    upper: Point
+    angle: float = 0.0
+
+    def _frame(self):
+        lower, upper = np.array(self.lower), np.array(self.upper)
+        c, s = (np.cos(self.angle), np.sin(self.angle)) if self.angle else (1.0, 0.0)
+        return (lower + upper) / 2, (upper - lower) / 2, np.array([[c, -s], [s, c]])
+
+    def bounds(self):
+        if self.angle == 0.0 or len(self.lower) == 1:
+            return np.array(self.lower), np.array(self.upper)
+        centre, half, turn = self._frame()
+        half[:2] = np.abs(turn) @ half[:2]
+        return centre - half, centre + half
+
+    def distance(self, x):
+        centre, half, turn = self._frame()
+        local = np.asarray(x, dtype=float) - centre
+        if self.angle:
+            local = np.concatenate([local[:, :2] @ turn, local[:, 2:]], axis=1)
+        q = np.abs(local) - half
+        return np.linalg.norm(np.maximum(q, 0), axis=1) + np.minimum(q.max(axis=1), 0)
+
+    def moved(self, shift):
+        return replace(self, lower=_point(np.add(self.lower, shift)), upper=_point(np.add(self.upper, shift)))
+
+    def pieces(self):
+        (x0, y0), (x1, y1) = self.lower[:2], self.upper[:2]
+        corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+        if self.angle:
+            centre, _, turn = self._frame()
+            corners = centre[:2] + (corners - centre[:2]) @ turn.T
+        return [Segment(tuple(corners[k]), tuple(corners[(k + 1) % 4]), k) for k in range(4)]
+
+    def cut(self, edges, order=4):
+        if len(self.lower) == 1:
+            return cutting.line(self.lower[0], self.upper[0], edges[0], order)
+        if len(self.lower) == 2:
+            return super().cut(edges, order)
+        base = Box(self.lower[:2], self.upper[:2], self.angle).cut(edges[:2], order)
+        return cutting.extrude(base, cutting.line(self.lower[2], self.upper[2], edges[2], order), len(edges[2]) - 1)
+
+
+@dataclass(frozen=True)
+class Ball(Shape):
+    """Interval, disc or sphere; in (r, z) a sphere with its centre on the axis, else a torus."""
+
+    centre: Point
+    radius: float
+
+    def bounds(self):
+        return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
+
+    def distance(self, x):
+        return np.linalg.norm(np.asarray(x, dtype=float) - self.centre, axis=1) - self.radius
+
+    def moved(self, shift):
+        return replace(self, centre=_point(np.add(self.centre, shift)))
+
+    def pieces(self):
+        return circle(self.centre, self.radius)
+
+    def cut(self, edges, order=4):
+        if len(self.centre) == 1:
+            return cutting.line(self.centre[0] - self.radius, self.centre[0] + self.radius, edges[0], order)
+        return super().cut(edges, order) if len(self.centre) == 2 else ball(self.centre, self.radius, edges, order)
+
+
+@dataclass(frozen=True)
+class Cylinder(Shape):
+    """Round the axis in (r, z), base = (0, z); round a vertical line in (x, y, z), base = the centre of its lower face."""
+
+    radius: float
+    height: float
+    base: Point
+
+    def bounds(self):
+        base = np.array(self.base)
+        if len(base) == 2:
+            return base, np.add(base, [self.radius, self.height])
+        side = np.array([self.radius, self.radius, 0])
+        return base - side, base + side + [0, 0, self.height]
+
+    def distance(self, x):
+        x = np.asarray(x, dtype=float)
+        r = x[:, 0] if len(self.base) == 2 else np.hypot(x[:, 0] - self.base[0], x[:, 1] - self.base[1])
+        half = self.height / 2
+        q = np.stack([r - self.radius, np.abs(x[:, -1] - self.base[-1] - half) - half], axis=1)
+        return np.linalg.norm(np.maximum(q, 0), axis=1) + np.minimum(q.max(axis=1), 0)
+
+    def moved(self, shift):
+        return replace(self, base=_point(np.add(self.base, shift)))
+
+    def pieces(self):
+        lower, upper = self.bounds()
+        return Box(_point(lower), _point(upper)).pieces()[:3]  # the fourth is the axis: no surface, and vertical, so no part in areas
+
+    def cut(self, edges, order=4):
+        if len(self.base) == 2:
+            return super().cut(edges, order)
+        base = Ball(self.base[:2], self.radius).cut(edges[:2], order)
+        return cutting.extrude(base, cutting.line(self.base[2], self.base[2] + self.height, edges[2], order), len(edges[2]) - 1)
+
+
+@dataclass(frozen=True)
+class Ring(Shape):
+    """Between two circles round `centre`."""
+
+    centre: Point
+    inner: float
+    outer: float
+
+    def bounds(self):
+        return np.array(self.centre) - self.outer, np.array(self.centre) + self.outer
+
+    def distance(self, x):
+        r = np.linalg.norm(np.asarray(x, dtype=float) - self.centre, axis=1)
+        return np.maximum(r - self.outer, self.inner - r)
+
+    def moved(self, shift):
+        return replace(self, centre=_point(np.add(self.centre, shift)))
+
+    def pieces(self):
+        return [*circle(self.centre, self.outer), *(replace(a, outward=-1, side=1) for a in circle(self.centre, self.inner))]
+
+
+@dataclass(frozen=True)
+class Polygon(Shape):
+    """Simple polygon through `vertices` in either sense; each edge is a side."""
+
+    vertices: tuple[Point, ...]
+
+    def bounds(self):
+        return np.min(self.vertices, axis=0), np.max(self.vertices, axis=0)
+
+    def distance(self, x):
+        x = np.asarray(x, dtype=float)
+        a = np.array(self.vertices)
+        b = np.roll(a, -1, axis=0)
+        nearest, inside = np.full(len(x), np.inf), np.zeros(len(x), dtype=bool)
+        for p, q in zip(a, b, strict=True):
+            run = q - p
+            t = np.clip((x - p) @ run / (run @ run), 0, 1)
+            nearest = np.minimum(nearest, np.linalg.norm(x - p - t[:, None] * run, axis=1))
+            if p[1] != q[1]:
+                spans = (p[1] > x[:, 1]) != (q[1] > x[:, 1])
+                inside ^= spans & (x[:, 0] < p[0] + (x[:, 1] - p[1]) / run[1] * run[0])
+        return np.where(inside, -nearest, nearest)
+
+    def moved(self, shift):
+        return replace(self, vertices=tuple(_point(np.add(v, shift)) for v in self.vertices))
+
+    def pieces(self):
+        a = np.array(self.vertices)
+        b = np.roll(a, -1, axis=0)
+        turning = np.sum(a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1])
+        points = a if turning > 0 else a[::-1]
+        return [Segment(tuple(p), tuple(q), k) for k, (p, q) in enumerate(zip(points, np.roll(points, -1, axis=0), strict=True))]
+
+
+KINDS = {"box": Box, "ball": Ball, "cylinder": Cylinder, "ring": Ring, "polygon": Polygon}
+
+
+def shape(model, dimension=None) -> Shape:
+    """The shape that a config names: `{"ball": {"centre": [0, 0], "radius": 1.0}}`, a model that dumps to it, or a Shape already."""
+    if isinstance(model, Shape):
+        return model
+    given = model if isinstance(model, dict) else model.model_dump()
+    (kind, values), *more = [(k, v) for k, v in given.items() if v is not None]
+    if more or kind not in KINDS:
+        raise ValueError(f"a shape is one of {', '.join(KINDS)}, not {', '.join(given)}")
+    made = {k: _point(v) if np.ndim(v) == 1 else tuple(_point(p) for p in v) if np.ndim(v) == 2 else float(v) for k, v in values.items() if v is not None}
+    for name in ("lower", "upper", "centre", "base"):
+        if name in made and np.ndim(values[name]) == 0:
+            made[name] = _point(made[name])
+    result = KINDS[kind](**made)
+    wanted = {"axisymmetric": 2, None: result.dimension}.get(dimension, dimension)
+    if result.dimension != wanted:
+        raise ValueError(f"{kind}: {result.dimension} coordinates in a scene of dimension {dimension}")
+    return result
+
+
+def cut_quadrature(body: Shape, edges, order: int = 4):
+    """Exact (Quadrature, Surface) of a shape over the cells between `edges` (one increasing array a direction)."""
+    return body.cut([np.asarray(e, dtype=float) for e in edges], order)
+
+
+def cells(body: Shape, edges, radial: bool = False) -> cutting.CutCells:
+    """One particle a cut cell, and its pieces of surface: physics.md 11, item 1. `radial`: weighted with r, per radian."""
+    edges = [np.asarray(e, dtype=float) for e in edges]
+    return cutting.particles(*body.cut(edges, 2), edges, radial)
+
+
+SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), 3: ("left", "right", "front", "back", "bottom", "top")}
+
+
+def on_side(normal: np.ndarray, side: str) -> np.ndarray:
+    """Which outward normals (N, d) face `side`: all, a direction (its component is the largest), or lateral (any that is not bottom or top)."""
+    d = normal.shape[1]
+    if side == "all":
+        return np.ones(len(normal), dtype=bool)
+    facing = np.argmax(np.abs(normal) - 1e-12 * np.arange(d), axis=1)
+    if side == "lateral":
+        return (facing != d - 1) if d > 1 else np.ones(len(normal), dtype=bool)
+    number = SIDES[d].index(side)
+    axis = number // 2
+    return (facing == axis) & ((normal[np.arange(len(normal)), facing] > 0) == bool(number % 2))
