@@ -1,0 +1,147 @@
+"""A point's result on disk: one small sealed HDF5 file.
+
+Written compactly (all series in one array: about 1 ms a point; a NetCDF file with a variable for each takes 20), because a sweep writes
+thousands and `collect` turns them into the labelled dataset. The seal's line carries what `status` needs.
+
+line    run_id, status, error, outcome, steps, wall_time, attempts, source, started, finished
+file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,] [y,] x), axes/<x>, particles/<field> (obs, ...), particles/row_size (S)
+        attribute `names`: JSON with the names of series and finals; `facts` and `config`: JSON
+"""
+
+import io
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm.records.netcdf import seal, unseal
+from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
+
+PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
+CALLS = "run_id status error outcome steps wall_time attempts source started finished".split()
+
+
+@dataclass
+class Record:
+    """What is known of a point. `status` as in variables.STATUS; a point that is not ok keeps its series so far and has no finals."""
+
+    run_id: str
+    status: int
+    error: str = ""
+    outcome: str = ""
+    steps: int = 0
+    wall_time: float = 0.0
+    attempts: int = 1
+    source: str = ""
+    started: str = ""
+    finished: str = ""
+    times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    series: dict[str, np.ndarray] = field(default_factory=dict)
+    finals: dict[str, float] = field(default_factory=dict)
+    axes: dict[str, np.ndarray] = field(default_factory=dict)
+    snapshot_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    grid: dict[str, np.ndarray] = field(default_factory=dict)
+    particles: dict[str, np.ndarray] = field(default_factory=dict)
+    row_size: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    facts: dict = field(default_factory=dict)
+    config: dict = field(default_factory=dict)
+
+    @property
+    def line(self) -> dict:
+        """The summary that the seal carries."""
+        return {name: getattr(self, name) for name in CALLS}
+
+
+def from_run(run_id: str, run: Any, **calls: Any) -> Record:
+    """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series and loses its finals."""
+    outcome = run.outcome
+    status = OK if outcome.ok else TIMEOUT if outcome.kind == "budget" else DIVERGED
+    error = "" if status == OK else f"{STATUS[status]}: {outcome.message or outcome.kind.replace('_', ' ')}"
+    for name in (*run.series, *run.finals):
+        describe(name)  # a name that the table does not know would have neither units nor a long name
+    sizes = [len(next(iter(rows.values()), ())) for rows in run.particles]
+    fields = run.particles[0] if run.particles else {}
+    return Record(
+        run_id=run_id,
+        status=status,
+        error=error,
+        outcome=outcome.kind,
+        steps=int(run.steps),
+        wall_time=float(run.wall_time),
+        times=np.asarray(run.times, dtype=float),
+        series={name: np.asarray(values, dtype=float) for name, values in run.series.items()},
+        finals={name: float(value) for name, value in run.finals.items()} if status == OK else {},
+        axes=dict(run.axes),
+        snapshot_times=np.asarray(run.snapshot_times, dtype=float),
+        grid=dict(run.grid),
+        particles={name: np.concatenate([np.asarray(rows[name]) for rows in run.particles]) for name in fields},
+        row_size=np.asarray(sizes, dtype=np.int64),
+        facts=dict(run.facts),
+        **calls,
+    )
+
+
+def pack(record: Record) -> bytes:
+    """The bytes of a point file."""
+    import h5py
+
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w", libver="latest") as file:
+
+        def put(name: str, values: Any) -> None:
+            values = np.asarray(values)
+            packed = {"chunks": values.shape, **PACKED} if values.size and values.nbytes < 2**20 else PACKED if values.size else {}
+            file.create_dataset(name, data=values, **packed)
+
+        if len(record.times):
+            put("time", record.times)
+        if record.series:
+            put("series", np.stack(list(record.series.values())))
+        if record.finals:
+            put("finals", np.array(list(record.finals.values())))
+        if len(record.snapshot_times):
+            put("snapshot", record.snapshot_times)
+        for name, values in record.grid.items():
+            put(f"grid/{name}", np.asarray(values, dtype=np.float32))
+        for name, values in record.axes.items():
+            put(f"axes/{name}", values)
+        for name, values in record.particles.items():
+            put(f"particles/{name}", values)
+        if record.particles:
+            put("particles/row_size", record.row_size)
+        file.attrs["names"] = json.dumps({"series": list(record.series), "finals": list(record.finals)})
+        file.attrs["facts"] = json.dumps(record.facts)
+        file.attrs["config"] = json.dumps(record.config)
+    return seal(buffer.getvalue(), record.line)
+
+
+def read(path: Path | str, fields: bool = True) -> Record:
+    """A point file, checked against its seal; `fields=False` leaves grid and particles on disk."""
+    body, line = unseal(Path(path).read_bytes(), path)
+    return parse(body, line, fields)
+
+
+def parse(body: bytes, line: dict, fields: bool = True) -> Record:
+    """The record in a body and its line."""
+    import h5py
+
+    with h5py.File(io.BytesIO(body)) as file:
+        names = json.loads(file.attrs["names"])
+        record = Record(**line, facts=json.loads(file.attrs["facts"]), config=json.loads(file.attrs["config"]))
+        if "time" in file:
+            record.times = file["time"][()]
+        if names["series"]:
+            record.series = dict(zip(names["series"], file["series"][()], strict=True))
+        if names["finals"]:
+            record.finals = dict(zip(names["finals"], file["finals"][()].tolist(), strict=True))
+        if "snapshot" in file:
+            record.snapshot_times = file["snapshot"][()]
+        if fields:
+            record.axes = {name: values[()] for name, values in file["axes"].items()} if "axes" in file else {}
+            record.grid = {name: values[()] for name, values in file["grid"].items()} if "grid" in file else {}
+            if "particles" in file:
+                record.particles = {name: values[()] for name, values in file["particles"].items()}
+                record.row_size = record.particles.pop("row_size")
+    return record

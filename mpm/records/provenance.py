@@ -1,0 +1,79 @@
+"""Where a result comes from: source, versions, machine. Only an allow-list of facts; nothing of the environment.
+
+`source_hash` covers every room that can change a number: all but records, sweep, study and plots.
+"""
+
+import functools
+import hashlib
+import importlib.metadata
+import os
+import platform
+import subprocess
+from datetime import UTC, datetime
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "plots"}
+PACKAGES = ("mpm", "numpy", "numba", "llvmlite", "scipy", "h5py", "h5netcdf", "xarray")
+
+
+@functools.cache
+def source_hash() -> str:
+    """Hash of the source that made a result (16 hex digits)."""
+    digest = hashlib.sha256()
+    for path in sorted(ROOT.rglob("*.py")):
+        place = path.relative_to(ROOT)
+        if place.parts[0] not in CANNOT_CHANGE_A_NUMBER:
+            digest.update(str(place).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@functools.cache
+def versions() -> dict[str, str]:
+    """Versions of what computes and writes."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+@functools.cache
+def git_revision() -> str:
+    """Revision of the source tree, `+changes` where it differs; empty outside a repository."""
+    if not (ROOT.parent / ".git").exists():
+        return ""
+    try:
+        command = ["git", "-C", str(ROOT.parent), "describe", "--always", "--abbrev=12", "--dirty=+changes"]
+        return subprocess.run(command, capture_output=True, text=True, timeout=5, check=False).stdout.strip()
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+
+
+@functools.cache
+def machine() -> dict:
+    """The machine, as far as it explains a wall time."""
+    return {"system": platform.system(), "processor": processor(), "cores": cores()}
+
+
+def processor() -> str:
+    """The processor's name."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    except OSError:
+        return platform.processor() or platform.machine()
+    return platform.machine()
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def now() -> str:
+    """The time, UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")

@@ -1,0 +1,79 @@
+import errno
+import os
+import random
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from mpm.records import netcdf
+from mpm.records.netcdf import Array, DamagedFile, Group, seal, summary, to_bytes, unseal, write_whole
+
+
+def example():
+    root = Group({"kappa": Array(("kappa",), np.array([0.2, 0.5]), {"units": "W/m/K"}), "status": Array(("kappa",), np.array([0, 4], dtype=np.int8))})
+    root.variables["error"] = Array(("kappa",), np.array(["", "diverged: θ"], dtype=object))
+    root.variables["cell"] = Array((), 1e-3)
+    series = Group({"time": Array(("time",), np.arange(3.0)), "temperature_mean": Array(("kappa", "time"), np.arange(6.0).reshape(2, 3), {"units": "K"})})
+    return to_bytes({"/": root, "series": series, "grid": Group()}, {"title": "é", "versions": {"numpy": "2"}, "smoke": True, "count": 3})
+
+
+def test_groups_read_back_with_units_and_json_attributes(tmp_path):
+    write_whole(tmp_path / "a.nc", seal(example(), {"counts": 1}))
+    with xr.open_datatree(tmp_path / "a.nc") as tree:
+        assert tree["series"].temperature_mean.sel(kappa=0.5).values.tolist() == [3, 4, 5]
+        assert tree.error.values.tolist() == ["", "diverged: θ"] and float(tree.cell) == 1e-3
+        assert tree.attrs["versions"] == '{"numpy": "2"}' and tree.attrs["smoke"] == "true" and tree.attrs["count"] == 3
+        assert tree.kappa.attrs["units"] == "W/m/K"
+        assert tree["series"].temperature_mean.encoding["fletcher32"] and tree["series"].temperature_mean.encoding["shuffle"]
+
+
+def test_disagreeing_dimensions_are_refused():
+    with pytest.raises(ValueError, match="dimension x"):
+        Group({"a": Array(("x",), np.zeros(2)), "b": Array(("x",), np.zeros(3))}).sizes()
+    with pytest.raises(ValueError, match="shape"):
+        Group({"a": Array(("x",), np.zeros((2, 2)))}).sizes()
+
+
+def test_no_flipped_bit_and_no_truncation_is_silent(tmp_path):
+    data = seal(example(), {"status": 0, "error": "x" * 5000})
+    assert unseal(data)[1]["status"] == 0
+    rng = random.Random(1)
+    for _ in range(300):
+        place = rng.randrange(8 * len(data))
+        flipped = bytearray(data)
+        flipped[place // 8] ^= 1 << place % 8
+        with pytest.raises(DamagedFile):
+            unseal(bytes(flipped))
+    for _ in range(50):
+        with pytest.raises(DamagedFile):
+            unseal(data[: rng.randrange(len(data))])
+
+
+def test_summary_reads_a_long_line_and_tells_a_missing_end(tmp_path):
+    path = tmp_path / "p.nc"
+    assert summary(path) is None
+    write_whole(path, seal(b"body" * 5000, {"error": "y" * 9000}))
+    assert len(summary(path)["error"]) == 9000
+    path.write_bytes(path.read_bytes()[:-30])
+    with pytest.raises(DamagedFile):
+        summary(path)
+    path.write_bytes(b"")
+    with pytest.raises(DamagedFile):
+        summary(path)
+
+
+@pytest.mark.parametrize("call", ["write", "fsync", "replace"])
+def test_a_failing_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, call):
+    path = tmp_path / "p.nc"
+    write_whole(path, b"old")
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(netcdf.os, call, full)
+    with pytest.raises(OSError, match=r"cannot write 3 bytes: No space left.*free") as caught:
+        write_whole(path, b"new")
+    assert caught.value.filename == str(path) and caught.value.errno == errno.ENOSPC
+    monkeypatch.undo()
+    assert path.read_bytes() == b"old" and os.listdir(tmp_path) == ["p.nc"]
