@@ -1,0 +1,33 @@
+"""Materials: how a particle answers deformation, and the functions of temperature that its parameters may be.
+
+Roles (the law chooses the function; all work compiled and in plain Python)
+          stress(law, e1, e2, e3, thermal) -> t1, t2, t3                               elastic laws: hencky
+          energy(law, e1, e2, e3) -> psi
+          moduli(law) -> lam, mu
+          flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
+                                                                                      flow laws: no_flow, radial, clipped
+          value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
+Shapes    e: principal elastic Hencky strains [-]; t: principal Kirchhoff stresses [Pa], in the same order, any order
+          thermal = gamma (Theta - Theta_0) [Pa], 0.0 without expansion; theta: temperature [K]; dt [s]
+          dissipated, psi: energy per reference volume [J/m3]
+May use   mpm.tensors, mpm.jit                                                        May not  see particles, grids or other roles
+To add    a file here that registers its NamedTuple with the roles of its kind, a line below, a menu entry in config;
+          tests/materials/test_menu.py finds it in ELASTIC, FLOW or LAWS by itself.
+"""
+
+from mpm.materials.clipped import EllipseClipped
+from mpm.materials.hencky import Hencky
+from mpm.materials.laws import Bump, Constant, Logistic, Table, table
+from mpm.materials.no_flow import NoFlow
+from mpm.materials.radial import EllipseRadial
+from mpm.materials.returns import return_map
+from mpm.materials.roles import energy, enthalpy, flow, moduli, stress, temperature_of, value
+
+ELASTIC = (Hencky,)
+FLOW = (NoFlow, EllipseRadial, EllipseClipped)
+LAWS = (Constant, Table, Bump, Logistic)
+
+__all__ = [
+    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "Logistic", "NoFlow", "Table",
+    "energy", "enthalpy", "flow", "moduli", "return_map", "stress", "table", "temperature_of", "value",
+]  # fmt: skip

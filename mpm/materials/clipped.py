@@ -1,0 +1,123 @@
+"""Viscoplastic flow on the ellipse as the source document has it, corrected: overstress in pressure only, q <= M at any rate (physics.md 5.1).
+
+Minimises (p - p_tr)^2/(2 K) + (q - q_tr)^2/(6 mu) + dt M^2/(2 eta) <|p|/(p0 sqrt(M^2 - q^2)) - 1>^2. With p = M p0 y cos(phi), q = M sin(phi)
+and T = tan(phi) one equation in T is left; c, s = cos(phi), sin(phi).
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from mpm.materials.ellipse import excess, invariants, slowness, strains, strict
+from mpm.materials.roles import flow, moduli, value
+
+MOST = 200  # steps; 65 is the most seen
+FAR = 1e150  # stands for T = inf, and its inverse for T = 0, where a bracket is halved
+
+
+class EllipseClipped(NamedTuple):
+    """Ellipse p^2/p0^2 + q^2 = M^2; M, p0 and eta are laws of temperature. Shear is clipped to M whatever eta is.
+
+    Good values  p0 within 1e-3..1e3, K dt/eta within 1e-12..1e12; eta = 0 is rate independent and equals `radial`.
+    Fails when   a law leaves M > 0, p0 > 0, eta >= 0: the map then reports ok = False. A sweep of eta moves compaction, not shear: see `radial`.
+    """
+
+    M: Any  # von Mises stress at p = 0 [Pa]
+    p0: Any  # hydrostatic yield pressure over M [-]
+    eta: Any  # [Pa s]
+
+
+@strict
+def angle(T):
+    """cos and sin of atan T, each to round-off of its own."""
+    if T <= 1.0:
+        c = 1.0 / math.sqrt(1.0 + T * T)
+        return c, T * c
+    u = 1.0 / T
+    s = 1.0 / math.sqrt(1.0 + u * u)
+    return u * s, s
+
+
+@strict
+def balance(T, P, Q, p0, omega, w1, w2):
+    """The two sides a, b of the equation in T, their slopes in ln T, and c, s, y, z = P - p/M. No difference of nearly equal numbers."""
+    c, s = angle(T)
+    shear = (Q - 1.0) + c * c / (1.0 + s) if s > 0.7 else Q - s
+    press = p0 * ((P / p0 - 1.0) + s * s / (1.0 + c)) if c > 0.7 else P - p0 * c
+    N = w1 * p0 * p0 * c * c + w2
+    dN = -2.0 * w1 * p0 * p0 * c * c * s * s
+    y, z = (w1 * p0 * P * c + w2) / N, w2 * press / N
+    dy, dz = (-w1 * p0 * P * s * s * c - y * dN) / N, (w2 * p0 * s * s * c - z * dN) / N
+    b = T * p0 * y * z
+    return omega * shear, b, -omega * s * c * c, b + T * p0 * (dy * z + y * dz), c, s, y, z, shear
+
+
+@strict
+def tangent(P, Q, p0, omega, w1, w2):
+    """The T of a trial state outside the ellipse, 0 < P, 0 < Q, and the number of steps (MOST: failed): Newton that a bracket keeps."""
+    r = P / p0
+    low = math.sqrt((1.0 - r) * (1.0 + r)) / r if r < 1.0 else 0.0
+    high = Q / math.sqrt((1.0 - Q) * (1.0 + Q)) if Q < 1.0 else math.inf
+    T = Q / r
+    for n in range(1, MOST):
+        if not low < T < high:
+            T = math.sqrt(max(low, 1.0 / FAR)) * math.sqrt(min(high, FAR))
+        a, b, da, db, _, _, _, _, _ = balance(T, P, Q, p0, omega, w1, w2)
+        g = a - b
+        if abs(g) <= 2e-16 * (abs(a) + abs(b)):
+            return T, n
+        if g > 0.0:
+            low = T
+        else:
+            high = T
+        new = -1.0  # outside every bracket: halve it
+        if n % 12 != 0:
+            if a > 0.0 and b > 0.0 and da / a < db / b:  # Newton on ln(a/b) in ln T
+                new = T * math.exp(min(max(math.log(a / b) / (db / b - da / a), -300.0), 300.0))
+            if not low < new < high and da < db:
+                new = T + T * (g / (db - da))
+        if not low < new < high:
+            new = math.sqrt(max(low, 1.0 / FAR)) * math.sqrt(min(high, FAR))
+        if abs(new - T) <= 1e-14 * T:
+            return new, n
+        T = new
+    return T, MOST
+
+
+@strict
+def map_clipped(p_trial, q_trial, K, mu, M, p0, eta, dt):
+    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST: failed."""
+    P, Q, p0 = float(abs(p_trial) / M), float(q_trial / M), float(p0)
+    if excess(P / p0, Q) <= 0.0:
+        return p_trial, q_trial, 0.0 * p_trial, 0.0 * q_trial, 0
+    x = slowness(K, eta, dt)
+    if P == 0.0 or x == math.inf:
+        q = min(q_trial, M)
+        return p_trial, q, 0.0 * p_trial, q_trial - q, 1
+    sign = 1.0 if p_trial >= 0.0 else -1.0
+    w1, w2 = x / (1.0 + x), 1.0 / (1.0 + x)
+    omega = float(K / (3.0 * mu))
+    T, steps = tangent(P, Q, p0, omega, w1, w2) if Q > 0.0 else (0.0, 1)
+    _, _, _, _, c, s, y, z, shear = balance(T, P, Q, p0, omega, w1, w2)
+    return sign * M * p0 * y * c, M * s, sign * M * z, M * shear, steps
+
+
+@strict
+def strain_clipped(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
+    """Mapped strains: (e1, e2, e3, dissipated, ok), the trial ones where nothing flows and where the map fails."""
+    K = lam + 2.0 * mu / 3.0
+    if not (M > 0.0 and p0 > 0.0 and eta >= 0.0):
+        return e1, e2, e3, 0.0, False
+    p_trial, q_trial, d1, d2, d3 = invariants(e1, e2, e3, K, mu, thermal)
+    p, q, dp, dq, steps = map_clipped(p_trial, q_trial, K, mu, M, p0, eta, dt)
+    if steps == 0:
+        return e1, e2, e3, 0.0, True
+    n1, n2, n3, work = strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal)
+    if steps == MOST or not work < math.inf:
+        return e1, e2, e3, 0.0, False
+    return n1, n2, n3, work, True
+
+
+@flow.register(EllipseClipped)
+def flow_clipped(law, elastic, e1, e2, e3, thermal, theta, dt):
+    lam, mu = moduli(elastic)
+    return strain_clipped(e1, e2, e3, lam, mu, value(law.M, theta), value(law.p0, theta), value(law.eta, theta), dt, thermal)

@@ -1,0 +1,86 @@
+"""Viscoplastic flow on the ellipse, radial overstress: Perzyna viscosity on pressure and shear alike (physics.md 5.2).
+
+Minimises (p - p_tr)^2/(2 K) + (q - q_tr)^2/(6 mu) + dt M^2/(2 eta) <s - 1>^2,  s = sqrt(p^2/p0^2 + q^2)/M: one implicit Euler step of
+dp/dt = -K M^2/eta <s - 1> ds/dp, dq/dt = -3 mu M^2/eta <s - 1> ds/dq.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from mpm.materials.ellipse import excess, invariants, slowness, strains, strict
+from mpm.materials.roles import flow, moduli, value
+
+MOST = 60  # Newton steps; 19 is the most seen
+
+
+class EllipseRadial(NamedTuple):
+    """Ellipse p^2/p0^2 + q^2 = M^2; M, p0 and eta are laws of temperature.
+
+    Relaxation times at held strain: eta p0^2/K in pressure, eta/(3 mu) in shear.
+    Good values  p0 within 1e-3..1e3 (p0 -> inf: viscous von Mises), K dt/eta within 1e-12..1e12; eta = 0 is rate independent.
+    Fails when   a law leaves M > 0, p0 > 0, eta >= 0: the map then reports ok = False.
+    """
+
+    M: Any  # von Mises stress at p = 0 [Pa]
+    p0: Any  # hydrostatic yield pressure over M [-]
+    eta: Any  # [Pa s]
+
+
+@strict
+def overstress(a1, a2, k1, k2, x):
+    """The root g >= 0 of 1/s - 1 + g x, s^2 = (a1/(1 + k1 g))^2 + (a2/(1 + k2 g))^2 > 1 at g = 0, and the number of steps (MOST: failed).
+
+    Increasing and concave in g, so that Newton from a lower bound climbs to the root without a safeguard. All arguments are numbers >= 0.
+    """
+    r = excess(a1, a2)
+    s = math.sqrt(a1 * a1 + a2 * a2)
+    g = max(0.0, (a1 - 1.0) / (k1 + a1 * x), (a2 - 1.0) / (k2 + a2 * x), r / (1.0 + s) / (max(k1, k2) + s * x))
+    for n in range(1, MOST):
+        u1, u2 = 1.0 + k1 * g, 1.0 + k2 * g
+        b1, b2 = a1 / u1, a2 / u2
+        s = math.sqrt(b1 * b1 + b2 * b2)
+        if b1 >= b2:  # s^2 - 1 without cancellation
+            r = b2 * b2 + (((a1 - 1.0) - k1 * g) / u1) * (b1 + 1.0)
+        else:
+            r = b1 * b1 + (((a2 - 1.0) - k2 * g) / u2) * (b2 + 1.0)
+        slope = (k1 * b1 * b1 / u1 + k2 * b2 * b2 / u2) / (s * s * s) + x
+        step = (r / (s * (1.0 + s)) - g * x) / slope
+        g += step
+        if step <= 1e-9 * g:  # quadratic: the next step would be below 1e-17
+            return g, n
+    return g, MOST
+
+
+@strict
+def map_radial(p_trial, q_trial, K, mu, M, p0, eta, dt):
+    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST: failed."""
+    a1, a2 = float(abs(p_trial) / (p0 * M)), float(q_trial / M)
+    x = slowness(K, eta, dt)
+    if excess(a1, a2) <= 0.0 or x == math.inf:
+        return p_trial, q_trial, 0.0 * p_trial, 0.0 * q_trial, 0
+    k1, k2 = float(1.0 / (p0 * p0)), float(3.0 * mu / K)
+    g, steps = overstress(a1, a2, k1, k2, x)
+    p, q = p_trial / (1.0 + k1 * g), q_trial / (1.0 + k2 * g)
+    return p, q, k1 * g * p, k2 * g * q, steps
+
+
+@strict
+def strain_radial(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
+    """Mapped strains: (e1, e2, e3, dissipated, ok), the trial ones where nothing flows and where the map fails."""
+    K = lam + 2.0 * mu / 3.0
+    if not (M > 0.0 and p0 > 0.0 and eta >= 0.0):
+        return e1, e2, e3, 0.0, False
+    p_trial, q_trial, d1, d2, d3 = invariants(e1, e2, e3, K, mu, thermal)
+    p, q, dp, dq, steps = map_radial(p_trial, q_trial, K, mu, M, p0, eta, dt)
+    if steps == 0:
+        return e1, e2, e3, 0.0, True
+    n1, n2, n3, work = strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal)
+    if steps == MOST or not work < math.inf:
+        return e1, e2, e3, 0.0, False
+    return n1, n2, n3, work, True
+
+
+@flow.register(EllipseRadial)
+def flow_radial(law, elastic, e1, e2, e3, thermal, theta, dt):
+    lam, mu = moduli(elastic)
+    return strain_radial(e1, e2, e3, lam, mu, value(law.M, theta), value(law.p0, theta), value(law.eta, theta), dt, thermal)

@@ -1,0 +1,53 @@
+"""What a material is asked. Each function is chosen by the type of its first argument (mpm.jit.role); the package docstring has the contract."""
+
+from mpm.jit import role
+
+
+def missing(law, what):
+    return TypeError(f"{type(law).__name__} does not know `{what}`")
+
+
+@role
+def stress(law, e1, e2, e3, thermal):
+    """Principal Kirchhoff stresses t1, t2, t3 [Pa] of principal elastic Hencky strains [-] and a thermal stress gamma (Theta - Theta_0) [Pa]."""
+    raise missing(law, "stress")
+
+
+@role
+def energy(law, e1, e2, e3):
+    """Isothermal strain energy per reference volume [J/m3]."""
+    raise missing(law, "energy")
+
+
+@role
+def moduli(law):
+    """Lame constants (lam, mu) [Pa] at zero strain: for return maps and time-step limits."""
+    raise missing(law, "moduli")
+
+
+@role
+def flow(law, elastic, e1, e2, e3, thermal, theta, dt):
+    """Elastic strains at the end of a step from the trial ones: (e1, e2, e3, dissipated, ok).
+
+    Pure: depends on its arguments only. Equal to the trial strains, bit for bit, where nothing flows. `dissipated` >= 0 is the step's
+    plastic work per reference volume [J/m3], `ok` false where the map failed: then the strains are the trial ones.
+    """
+    raise missing(law, "flow")
+
+
+@role
+def value(law, theta):
+    """The parameter at temperature theta [K]."""
+    raise missing(law, "value")
+
+
+@role
+def enthalpy(law, theta):
+    """A primitive of `value` over temperature, exact: specific enthalpy [J/kg] where the parameter is a specific heat."""
+    raise missing(law, "enthalpy")
+
+
+@role
+def temperature_of(law, h, guess):
+    """The theta with enthalpy(law, theta) = h, to round-off, for a positive law: exact through any latent heat. `guess` [K] only saves time."""
+    raise missing(law, "temperature_of")
