@@ -25,7 +25,7 @@ CALLS = "run_id status error outcome steps wall_time attempts source started fin
 
 @dataclass
 class Record:
-    """What is known of a point. `status` as in variables.STATUS; a point that is not ok keeps its series so far and has no finals."""
+    """What is known of a point. `status` as in variables.STATUS; a point that is not ok keeps its series so far; its finals are NaN."""
 
     run_id: str
     status: int
@@ -55,7 +55,7 @@ class Record:
 
 
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:
-    """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series and loses its finals."""
+    """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series, and its finals become NaN."""
     outcome = run.outcome
     status = OK if outcome.ok else TIMEOUT if outcome.kind == "budget" else DIVERGED
     error = "" if status == OK else f"{STATUS[status]}: {outcome.message or outcome.kind.replace('_', ' ')}"
@@ -72,7 +72,7 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
         wall_time=float(run.wall_time),
         times=np.asarray(run.times, dtype=float),
         series={name: np.asarray(values, dtype=float) for name, values in run.series.items()},
-        finals={name: float(value) for name, value in run.finals.items()} if status == OK else {},
+        finals={name: float(value) if status == OK else np.nan for name, value in run.finals.items()},
         axes=dict(run.axes),
         snapshot_times=np.asarray(run.snapshot_times, dtype=float),
         grid=dict(run.grid),

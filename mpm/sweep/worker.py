@@ -1,0 +1,136 @@
+"""Worker: a process that lives through a sweep, runs one point at a time and puts each on disk before it says so.
+
+Messages are JSON on one private socket. In: {do: warm|point|stop|quit}. Out: {is: ready|warmed|beat|done|cancelled|unwritten}.
+A thread listens, so that the parent's end (EOF) ends the worker at once, whatever compiled code is running: no orphan outlives the parent.
+"""
+
+import functools
+import importlib
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from mpm.sweep.executors import Task
+
+QUIET = 0.2  # least seconds between two beats told
+
+
+def perform(task: Task, runner: str, stopped: Callable[[float, float], str]) -> dict:
+    """Run a point, save its record, and return the message that tells it.
+
+    `stopped(fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
+    A point that raises is a record with status `failed`.
+    """
+    from mpm.config import load
+    from mpm.records import point, variables
+    from mpm.records.provenance import now, source_hash
+    from mpm.sweep.store import Store
+
+    calls: dict[str, Any] = {"attempts": task.attempt, "source": source_hash(), "started": now(), "config": task.config}
+    began = time.perf_counter()
+    why = ""
+
+    def beat(fraction: float, when: float) -> bool:
+        nonlocal why
+        why = why or stopped(fraction, when)
+        return bool(why)
+
+    try:
+        run = importlib.import_module(runner).run_point(load(task.config), beat)
+        if why == "cancel" and not run.outcome.ok:
+            return {"is": "cancelled", "run_id": task.run_id}
+        record = point.from_run(task.run_id, run, finished=now(), **calls)
+    except Exception as error:  # whatever the model raises is this point's failure, not the sweep's
+        text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
+        record = point.Record(task.run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
+    try:
+        Store(task.out).save(record)
+    except OSError as error:
+        return {"is": "unwritten", "run_id": task.run_id, "why": f"{error.filename}: {error.strerror}"}
+    return {"is": "done", "run_id": task.run_id, "line": record.line}
+
+
+def first_line(error: BaseException) -> str:
+    """What an error says, on one line."""
+    return (str(error).strip().splitlines() or ["no message"])[0][:500]
+
+
+def where(error: BaseException) -> str:
+    """` (file.py:12)`: the innermost line, for a report; never values."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return f" ({os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno})" if trace else ""
+
+
+class Worker:
+    """The child's side of one socket."""
+
+    def __init__(self, descriptor: int, runner: str):
+        from multiprocessing.connection import Connection
+
+        self.pipe = Connection(descriptor)
+        self.runner = runner
+        self.orders: queue.SimpleQueue[dict] = queue.SimpleQueue()
+        self.stop = ""
+        self.told = 0.0
+
+    def tell(self, message: dict) -> None:
+        """Send a message. With the parent gone, end: an error here would else be taken for the point's own."""
+        try:
+            self.pipe.send_bytes(json.dumps(message).encode())
+        except OSError:
+            os._exit(1)
+
+    def listen(self) -> None:
+        """Thread: queue orders, note stops, end with the parent."""
+        while True:
+            try:
+                order = json.loads(self.pipe.recv_bytes())
+            except (EOFError, OSError):
+                os._exit(1)
+            if order["do"] == "stop":
+                self.stop = order["why"]
+            else:
+                self.stop = ""  # a stop that came before this order was for the point before it
+                self.orders.put(order)
+
+    def live(self) -> None:
+        """Import, then obey until told to quit."""
+        threading.Thread(target=self.listen, daemon=True).start()
+        runner = importlib.import_module(self.runner)
+        importlib.import_module("mpm.records.point")
+        importlib.import_module("h5py")
+        config = importlib.import_module("mpm.config")
+        self.tell({"is": "ready"})
+        while (order := self.orders.get())["do"] != "quit":
+            if order["do"] == "warm":
+                try:
+                    runner.warm(config.load(order["config"]))
+                    self.tell({"is": "warmed", "text": ""})
+                except Exception as error:  # the points will say the same, each in its own record
+                    self.tell({"is": "warmed", "text": f"compiling ahead failed: {first_line(error)}{where(error)}"})
+            else:
+                task = Task(**order["task"])
+                self.tell(perform(task, self.runner, functools.partial(self.beat, task.run_id)))
+
+    def beat(self, run_id: str, fraction: float, when: float) -> str:
+        """Tell progress now and then; return the reason to stop, if any."""
+        if time.monotonic() - self.told > QUIET:
+            self.told = time.monotonic()
+            self.tell({"is": "beat", "run_id": run_id, "fraction": float(fraction), "time": float(when)})
+        return self.stop
+
+
+def main() -> None:
+    """Started by `processes.Child` with the socket's descriptor and the runner's name as arguments."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; what to do about it is the parent's choice
+    worker = Worker(int(sys.argv[1]), sys.argv[2])
+    worker.live()
+    os._exit(0)  # the listener sits in a read; nothing here is left to tidy
