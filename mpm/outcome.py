@@ -11,7 +11,7 @@ KINDS = {
     COMPLETED: ("completed", "", ""),
     NON_FINITE: ("non_finite", "a value is not finite", "lower `time.safety`, or look for a parameter that is out of scale"),
     INVERTED: ("inverted", "det F <= 0", "lower `time.safety`; if it stays, the load inverts the material: a stiffer body, slower walls or a finer grid"),
-    OVERSTRETCHED: ("overstretched", "dt |grad v| > 1/2 or J outside (1e-3, 1e3)", "lower `time.safety`; a body that tears or collapses has left what the model covers"),
+    OVERSTRETCHED: ("overstretched", "dt |grad v| > 1/2 or J outside (1e-3, 1e3)", "lower `time.safety`; a body that tears has left the model"),
     LEFT_GRID: ("left_grid", "a particle left the grid", "enlarge `grid.size`, or close the side with a wall"),
     RETURN_MAP: ("return_map", "the return map did not converge", "check M, p0 and eta: p0 within 1e-3..1e3, K dt/eta within 1e-12..1e12"),
     STEP_UNDERFLOW: ("step_underflow", "the stable step fell below 1/256 of the first", "the scene stiffens or speeds up without bound: look at velocity.max and J.max"),

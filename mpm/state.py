@@ -63,7 +63,6 @@ class Thermal(NamedTuple):
 
     theta: np.ndarray  # (N,) temperature less zero [K]
     c: np.ndarray  # (N, D) affine part: temperature gradient [K/m]
-    F: np.ndarray  # (N, D, D) total deformation gradient in the grid's directions: carries the surface (Nanson)
     zero: float  # [K]
     kappa: Any  # law [W/(m K)]
     alpha: Any  # law [J/(kg K)]
@@ -72,6 +71,7 @@ class Thermal(NamedTuple):
 class Surface(NamedTuple):
     """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11)."""
 
+    F: np.ndarray  # (N, D, D) total deformation gradient of the particles in the grid's directions: carries areas and offsets (Nanson)
     owner: np.ndarray  # (S,) particle
     area: np.ndarray  # (S, D) reference area times outward normal
     offset: np.ndarray  # (S, D) reference offset from particle to the piece's centroid [m]
@@ -80,7 +80,13 @@ class Surface(NamedTuple):
 
 
 class Isothermal(NamedTuple):
-    """No heat."""
+    """No heat: laws of temperature are taken at this one [K]."""
+
+    temperature: float
+
+
+class NoExchange(NamedTuple):
+    """No surface exchanges heat: none is stored, and F is not carried."""
 
 
 class NoExpansion(NamedTuple):
@@ -101,8 +107,8 @@ class NoHeating(NamedTuple):
 class Heating(NamedTuple):
     """Elastic heating along the adiabat and the share of dissipation that becomes heat (physics.md 4, step 7)."""
 
-    Gamma: float  # gamma/(R0 alpha), zero where elastic heating is absent [-]
-    fraction: float  # chi_d [-]
+    gamma: float  # stress-temperature modulus, zero where elastic heating is not named [Pa/K]
+    fraction: float  # chi_d, zero where dissipation heating is not named [-]
 
 
 class Body(NamedTuple):
@@ -110,7 +116,7 @@ class Body(NamedTuple):
 
     particles: Particles
     thermal: Any  # Thermal or Isothermal
-    surface: Any  # Surface or Isothermal
+    surface: Any  # Surface or NoExchange
     elastic: Any
     flow: Any
     expansion: Any

@@ -5,7 +5,7 @@ v_p = sum w v_i+,  C_p = 4/h^2 sum w v_i+ d^T.   Good for: nearly everything.   
 
 from typing import NamedTuple
 
-from mpm.transfer import carry
+from mpm.transfer.roles import carry, collect, gather, scatter, spread, uses_basis_gradient, wants_change
 
 
 class Apic(NamedTuple):
@@ -20,3 +20,28 @@ def _(scheme, particles, first, chunk, count, change):
             particles.v[i, c] = chunk.v[c, p]
             for d in range(particles.v.shape[1]):
                 particles.C[i, c, d] = chunk.C[c, d, p]
+
+
+@wants_change.register(Apic)
+def _(scheme):
+    return False
+
+
+@spread.register(Apic)
+def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
+    D = chunk.a.shape[0]
+    for c in range(D):
+        for p in range(count):
+            chunk.a[c, p] += chunk.f[c, p]
+        for d in range(D):
+            for p in range(count):
+                if uses_basis_gradient(gradient):
+                    chunk.G[c, d, p] = chunk.S[c, d, p]
+                else:
+                    chunk.A[c, d, p] += chunk.S[c, d, p]
+    scatter(space, gradient, x, first, chunk, count, nodes, box)
+
+
+@collect.register(Apic)
+def _(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
+    gather(space, gradient, x, first, chunk, count, nodes)

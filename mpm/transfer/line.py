@@ -2,7 +2,7 @@
 
 from mpm.basis.quadratic import slopes, weights
 from mpm.state import Line
-from mpm.transfer import gather, gather_scalar, locate, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.roles import gather, gather_scalar, locate, scatter, scatter_scalar, uses_basis_gradient
 
 
 @scatter.register(Line)

@@ -1,0 +1,108 @@
+"""What a state amounts to: sums, extrema, energies, the heat ledger. Pure functions of one body."""
+
+import math
+
+import numpy as np
+
+from mpm.boundary import directions, extents
+from mpm.jit import kernel, role
+from mpm.materials import energy, enthalpy, stress
+from mpm.materials.laws import Constant
+from mpm.state import Axisymmetric, Line, Plane, Thermal, Volume
+from mpm.tensors import eigen2, eigen3
+from mpm.transfer import scatter_scalar
+
+
+@role
+def principal(space, B, i):
+    """Principal elastic Hencky strains of particle i, sorted by nothing."""
+    raise TypeError(f"no strain for {type(space).__name__}")
+
+
+@principal.register(Line)
+def _(space, B, i):
+    return 0.5 * math.log1p(B[i, 0]), 0.5 * math.log1p(B[i, 1]), 0.5 * math.log1p(B[i, 2])
+
+
+@principal.register(Plane)
+@principal.register(Axisymmetric)
+def _(space, B, i):
+    l1, l2, _, _ = eigen2(B[i, 0], B[i, 1], B[i, 3])
+    return 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(B[i, 2])
+
+
+@principal.register(Volume)
+def _(space, B, i):
+    values = eigen3(B[i, 0], B[i, 1], B[i, 2], B[i, 3], B[i, 4], B[i, 5])
+    return 0.5 * math.log1p(values[0]), 0.5 * math.log1p(values[1]), 0.5 * math.log1p(values[2])
+
+
+@kernel
+def strains(space, B):
+    """Principal elastic Hencky strains (N, 3)."""
+    out = np.empty((B.shape[0], 3))
+    for i in range(B.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = principal(space, B, i)
+    return out
+
+
+@kernel
+def stored(law, e, V0):
+    """Sum V0 psi [J]."""
+    total = 0.0
+    for i in range(V0.shape[0]):
+        total += V0[i] * energy(law, e[i, 0], e[i, 1], e[i, 2])
+    return total
+
+
+@kernel
+def stresses(law, e, thermal):
+    """Principal Kirchhoff stresses (N, 3) [Pa]; thermal (N,) is gamma (Theta - Theta_0)."""
+    out = np.empty_like(e)
+    for i in range(e.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = stress(law, e[i, 0], e[i, 1], e[i, 2], thermal[i])
+    return out
+
+
+@kernel
+def enthalpies(law, theta):
+    """Specific enthalpy (N,) [J/kg] of absolute temperatures."""
+    out = np.empty(theta.shape[0])
+    for i in range(theta.shape[0]):
+        out[i] = enthalpy(law, theta[i])
+    return out
+
+
+def heat_since(body, start: np.ndarray) -> float:
+    """Heat taken up since temperatures were `start` (less zero) [J]."""
+    thermal, m = body.thermal, body.particles.m
+    if isinstance(thermal.alpha, Constant):
+        return float(np.sum(m * thermal.alpha.value * (thermal.theta.astype(float) - start)))
+    return float(np.sum(m * (enthalpies(thermal.alpha, thermal.zero + thermal.theta.astype(float)) - enthalpies(thermal.alpha, thermal.zero + start))))
+
+
+def kinetic(space, particles) -> float:
+    """1/2 sum m (|v|^2 + h^2/4 |C|^2): with the affine part [J]."""
+    still = 0.5 * np.sum(particles.m * np.sum(particles.v.astype(float) ** 2, axis=1))
+    return float(still + space.h**2 / 8 * np.sum(particles.m * np.sum(particles.C.astype(float) ** 2, axis=(1, 2))))
+
+
+def finite(body) -> str:
+    """The name of a field that is not finite, or nothing."""
+    fields = {"position": body.particles.x, "velocity": body.particles.v, "strain": body.particles.B, "J": body.particles.J}
+    if isinstance(body.thermal, Thermal):
+        fields["temperature"] = body.thermal.theta
+    return next((name for name, values in fields.items() if not np.isfinite(np.sum(values))), "")
+
+
+@kernel
+def nodal(space, x, weights, nodes):
+    """nodes_i += sum_p weights_p w_ip: for fields on the grid."""
+    D = directions(space)
+    zero = np.zeros((D, x.shape[0]))
+    scatter_scalar(space, x, 0, x.shape[0], weights, zero, zero, nodes)
+
+
+def grid_shape(space) -> tuple[int, ...]:
+    """Nodes by direction, as many as there are directions."""
+    return extents(space)[: directions(space)]

@@ -1,0 +1,9 @@
+"""Heat at particles and surfaces of bodies that move.
+
+local.py     thermal stress, elastic and dissipative heating, temperature rise through enthalpy
+surface.py   area_and_offset(space, ...): a surface piece in the current shape
+The heat step itself, which needs transfers and walls too, is integrate/heat_step.py; bodies that do not move are mpm.rigid.
+Absent       Isothermal(), NoExchange(), NoExpansion(), NoHeating(): nothing stored, compiled or computed
+May use      mpm.materials.laws, mpm.state, mpm.jit          May not  see grids
+To add       a role's sibling beside the others, its NamedTuple in mpm.state, its name in config
+"""

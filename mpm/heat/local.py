@@ -1,0 +1,75 @@
+"""What deformation and temperature do to each other at a particle: thermal stress, heating along the adiabat, heat of dissipation.
+
+thermal stress   gamma (Theta - Theta_0)                                                     physics.md 1
+heating          Theta <- Theta exp(-gamma/(R0 alpha) (tr eps_new - tr eps_old)) + chi_d D/(R0 alpha)   physics.md 4, step 7
+The exponential is the exact adiabat, so any step gives Theta = Theta_0 J^-Gamma.
+"""
+
+import math
+
+from mpm.jit import role
+from mpm.materials.laws import Constant, enthalpy, temperature_of, value
+from mpm.state import Expansion, Heating, Isothermal, NoExpansion, NoHeating, Thermal
+
+
+@role
+def rise(alpha, theta, heat):
+    """Temperature rise [K] of one kilogram at `theta` [K] that takes up `heat` [J/kg]: through enthalpy, so no step jumps over latent heat."""
+    return temperature_of(alpha, enthalpy(alpha, theta) + heat, theta) - theta
+
+
+@rise.register(Constant)
+def _(alpha, theta, heat):
+    return heat / alpha.value
+
+
+@role
+def temperature(thermal, i):
+    """Absolute temperature of particle i [K]."""
+    raise TypeError(f"no temperature in {type(thermal).__name__}")
+
+
+@temperature.register(Isothermal)
+def _(thermal, i):
+    return thermal.temperature
+
+
+@temperature.register(Thermal)
+def _(thermal, i):
+    return thermal.zero + thermal.theta[i]
+
+
+@role
+def thermal_stress(expansion, thermal, i):
+    """gamma (Theta - Theta_0) of particle i [Pa]."""
+    raise TypeError(f"no thermal stress in {type(expansion).__name__}")
+
+
+@thermal_stress.register(NoExpansion)
+def _(expansion, thermal, i):
+    return 0.0
+
+
+@thermal_stress.register(Expansion)
+def _(expansion, thermal, i):
+    return expansion.gamma * (thermal.theta[i] + expansion.shift)
+
+
+@role
+def heat_locally(heating, thermal, i, density, stretched, dissipated):
+    """Heat particle i after tr eps grew by `stretched` and `dissipated` [J/m3 of reference] was lost; returns the heat gained [J/m3]."""
+    raise TypeError(f"no heating in {type(heating).__name__}")
+
+
+@heat_locally.register(NoHeating)
+def _(heating, thermal, i, density, stretched, dissipated):
+    return 0.0
+
+
+@heat_locally.register(Heating)
+def _(heating, thermal, i, density, stretched, dissipated):
+    theta = thermal.zero + thermal.theta[i]
+    alpha = value(thermal.alpha, theta)
+    gained = density * alpha * theta * math.expm1(-heating.gamma / (density * alpha) * stretched) + heating.fraction * dissipated
+    thermal.theta[i] += rise(thermal.alpha, theta, gained / density)
+    return gained

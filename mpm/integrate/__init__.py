@@ -1,0 +1,7 @@
+"""Integration: what happens in a step, and how long a step may be.
+
+respond.py    a particle's answer to the velocity gradient: strain, flow, stress, heating, and what it scatters next
+heat_step.py  one explicit heat step: scatter, conduct, exchange, gather
+explicit.py   the mechanical step as the algorithm box of physics.md 4
+timestep.py   every explicit limit, and which one binds
+"""

@@ -1,0 +1,144 @@
+"""The mechanical step, symplectic Euler, chunk by chunk (physics.md 4).
+
+open      particles -> nodes
+each step nodes: v = p/m + dt g, walls
+          each chunk: gather v, L -> carry (APIC, FLIP) -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
+          clear these nodes, swap
+A chunk of particles stays in the first-level cache from gather to scatter.
+"""
+
+import numpy as np
+from numba import literal_unroll
+
+from mpm.boundary import directions, extents
+from mpm.boundary.walls import clear, empty, fold, impose, unfold
+from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
+from mpm.jit import kernel
+from mpm.outcome import LEFT_GRID
+from mpm.state import PAD
+from mpm.transfer import CHUNK, carry, collect, new_chunk, spread, wants_change
+
+
+@kernel
+def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity, dt, steps, reports):
+    """`steps` steps of `dt` of all bodies on one grid.
+
+    nodes, force: (2, n, D + 1), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
+    boxes (2, 3, 2), walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py. Returns early where a particle fails.
+    """
+    chunk = new_chunk(gravity.shape[0], nodes)
+    change = np.zeros_like(chunk.v)
+    now = 0
+    shape = extents(space)
+    empty(shape, boxes[0])
+    empty(shape, boxes[1])
+    if not open_all(space, gradient, scheme, bodies, chunk, nodes[0], force[0], boxes[0], dt, reports):
+        return
+    for step in range(steps):
+        update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
+        last = step == steps - 1
+        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
+            return
+        if wants_change(scheme):
+            clear(force[now], shape, boxes[now].copy())
+        clear(nodes[now], shape, boxes[now])
+        now = 1 - now
+
+
+@kernel
+def open_all(space, gradient, scheme, bodies, chunk, nodes, force, box, dt, reports):
+    """First scatter of a run of steps; false where a particle cannot answer."""
+    b = 0
+    for body in literal_unroll(bodies):
+        x = body.particles.x
+        chunk.L[:] = 0.0
+        for first in range(0, x.shape[0], CHUNK):
+            count = min(CHUNK, x.shape[0] - first)
+            respond(space, gradient, body, chunk, first, count, 0.0, dt, reports[b])
+            if reports[b, CODE] != 0.0:
+                return False
+            spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box)
+        b += 1
+    return True
+
+
+@kernel
+def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
+    """Gather from buffer `now`, respond, and scatter on to the other unless it is the last step; false where a particle fails."""
+    b = 0
+    for body in literal_unroll(bodies):
+        x = body.particles.x
+        for first in range(0, x.shape[0], CHUNK):
+            count = min(CHUNK, x.shape[0] - first)
+            collect(scheme, space, gradient, x, first, chunk, count, nodes[now], force[now], change)
+            carry(scheme, body.particles, first, chunk, count, change)
+            move(space, x, chunk, first, count, dt, reports[b])
+            if reports[b, CODE] == 0.0:
+                respond(space, gradient, body, chunk, first, count, dt, dt, reports[b])
+            if reports[b, CODE] != 0.0:
+                reports[b, STEP] = step
+                return False
+            if not last:
+                spread(scheme, space, gradient, x, first, chunk, count, nodes[1 - now], force[1 - now], boxes[1 - now])
+        b += 1
+    return True
+
+
+@kernel
+def update(space, scheme, nodes, force, box, walls, gravity, dt):
+    """Nodes: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold. Where the change is wanted, force becomes v_i+ - v_i."""
+    shape = extents(space)
+    D = directions(space)
+    folded = box.copy()
+    if wants_change(scheme):
+        fold(force, D, shape, folded, walls)
+    fold(nodes, D, shape, box, walls)
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                m = nodes[n, D]
+                inverse = 1.0 / m if m > 0.0 else 0.0
+                for c in range(D):
+                    push = dt * gravity[c] if m > 0.0 else 0.0
+                    if wants_change(scheme):
+                        nodes[n, c] *= inverse
+                        force[n, c] = force[n, c] * inverse + push
+                    else:
+                        nodes[n, c] = nodes[n, c] * inverse + push
+    impose(nodes, D, shape, box, walls)
+    if wants_change(scheme):
+        for i in range(box[0, 0], box[0, 1]):
+            for j in range(box[1, 0], box[1, 1]):
+                row = (i * shape[1] + j) * shape[2]
+                for n in range(row + box[2, 0], row + box[2, 1]):
+                    for c in range(D):
+                        before = nodes[n, c]
+                        nodes[n, c] += force[n, c]
+                        force[n, c] = before
+        impose(nodes, D, shape, box, walls)
+        for i in range(box[0, 0], box[0, 1]):
+            for j in range(box[1, 0], box[1, 1]):
+                row = (i * shape[1] + j) * shape[2]
+                for n in range(row + box[2, 0], row + box[2, 1]):
+                    for c in range(D):
+                        force[n, c] = nodes[n, c] - force[n, c]
+        unfold(force, D, shape, box, walls)
+    unfold(nodes, D, shape, box, walls)
+
+
+@kernel
+def move(space, x, chunk, first, count, dt, report):
+    """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run (a NaN position too)."""
+    shape = extents(space)
+    for p in range(count):
+        i = first + p
+        speed = 0.0
+        for c in range(x.shape[1]):
+            v = chunk.v[c, p]
+            speed += v * v
+            x[i, c] += dt * v
+            # Node i of an array lies at (i - PAD) h; the stencil of x reaches one node to each side of the nearest.
+            if not (0.6 - PAD) * space.h < x[i, c] < (shape[c] - PAD - 1.6) * space.h and report[CODE] == 0.0:
+                report[CODE], report[PARTICLE] = LEFT_GRID, i
+        report[SPEED] = max(report[SPEED], speed)

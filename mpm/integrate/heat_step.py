@@ -1,0 +1,179 @@
+"""One explicit heat step (physics.md 3, 10, 11).
+
+C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
+C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~ = w + grad(w) (x_s - x_p)
+h_p += alpha [ sum w d(theta_i) + blend (sum w theta_i - theta_p) ],   theta_p = theta(h_p),   c_p = affine 4/h^2 sum w theta_i+ d
+
+Both w and w~ sum to one over the nodes, and grad(w) to nothing, so the heat of the particles changes by exactly what the surface exchanged,
+whatever alpha is. blend = 1 and affine = 1 is APIC; blend = affine = 0 is FLIP; blend = 1, affine = 0 is PIC.
+Good values: APIC with steps of 0.1 to 0.2 R0 alpha h^2/(kappa J).   Fails when: heat steps are much smaller (APIC and PIC damp by the step), or a step
+is over the limit of integrate/timestep.py.
+"""
+
+import numpy as np
+
+from mpm.boundary import directions, extents
+from mpm.boundary.walls import clear, empty, fold, unfold
+from mpm.heat.local import rise
+from mpm.heat.surface import area_and_offset
+from mpm.jit import kernel, role
+from mpm.materials.laws import value
+from mpm.state import Isothermal, NoExchange, Surface, Thermal
+from mpm.transfer import CHUNK, gather_scalar, locate, scatter_scalar
+
+
+@kernel
+def heat_step(space, body, nodes, walls, dt, substeps, blend, affine):
+    """Advance one body's temperatures by dt in `substeps` grid steps; nodes: (4, n) scratch, zero before and after. Returns the heat gained [J]."""
+    return advance_heat(body.thermal, space, body, nodes, walls, dt, substeps, blend, affine)
+
+
+@role
+def advance_heat(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+    """See heat_step."""
+    raise TypeError(f"no heat for {type(thermal).__name__}")
+
+
+@advance_heat.register(Isothermal)
+def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+    return 0.0
+
+
+@advance_heat.register(Thermal)
+def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+    shape = extents(space)
+    x, m = body.particles.x, body.particles.m
+    box = np.empty((3, 2), np.int64)
+    empty(shape, box)
+    for i in range(x.shape[0]):
+        for a in range(x.shape[1]):
+            i0, _ = locate(x[i, a], 1.0 / space.h)
+            box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + 3)
+    capacity, theta, start, rate = nodes[0], nodes[1], nodes[2], nodes[3]
+    D = directions(space)
+    work = np.zeros((2 + 3 * D, CHUNK))
+    scatter_heat(space, x, m, thermal, capacity, theta, work)
+    folded = box.copy()
+    fold(capacity.reshape(-1, 1), 0, shape, folded, walls)
+    fold(theta.reshape(-1, 1), 0, shape, box, walls)
+    over_nodes(theta, capacity, start, shape, box, True)
+    unfold(theta.reshape(-1, 1), 0, shape, box, walls)
+    unfold(start.reshape(-1, 1), 0, shape, box, walls)
+    gained = 0.0
+    for _ in range(substeps):
+        conduct(space, body, thermal, theta, rate, dt / substeps, work)
+        gained += exchange(body.surface, space, body, thermal, theta, rate, dt / substeps, work)
+        fold(rate.reshape(-1, 1), 0, shape, box, walls)
+        over_nodes(rate, capacity, theta, shape, box, False)
+        unfold(theta.reshape(-1, 1), 0, shape, box, walls)
+    gather_heat(space, x, thermal, start, theta, blend, affine, work)
+    for field in range(4):
+        used = box.copy()
+        clear(nodes[field].reshape(-1, 1), shape, used)
+    return gained
+
+
+@kernel
+def over_nodes(heat, capacity, theta, shape, box, opening):
+    """Opening: heat becomes temperature, copied to `theta`. Later: theta += heat/capacity, and heat is cleared."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                change = heat[n] / capacity[n] if capacity[n] > 0.0 else 0.0
+                if opening:
+                    heat[n] = change
+                    theta[n] = change
+                else:
+                    theta[n] += change
+                    heat[n] = 0.0
+
+
+@kernel
+def scatter_heat(space, x, m, thermal, capacity, heat, work):
+    """Capacity and heat on to the nodes."""
+    D = directions(space)
+    a, A, zero = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D]
+    zero[:] = 0.0
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        for p in range(count):
+            a[p] = m[first + p] * value(thermal.alpha, thermal.zero + thermal.theta[first + p])
+        scatter_scalar(space, x, first, count, a, zero, zero, capacity)
+        for p in range(count):
+            for k in range(D):
+                A[k, p] = a[p] * thermal.c[first + p, k]
+            a[p] *= thermal.theta[first + p]
+        scatter_scalar(space, x, first, count, a, A, zero, heat)
+
+
+@kernel
+def conduct(space, body, thermal, theta, rate, dt, work):
+    """rate_i += dt sum V q grad(w)."""
+    D = directions(space)
+    particles = body.particles
+    at, slope, grad, zero = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D], work[2 + 2 * D : 2 + 3 * D]
+    for first in range(0, particles.x.shape[0], CHUNK):
+        count = min(CHUNK, particles.x.shape[0] - first)
+        gather_scalar(space, particles.x, first, count, theta, at, slope, grad)
+        for p in range(count):
+            flow = -dt * particles.J[first + p] * particles.V0[first + p] * value(thermal.kappa, thermal.zero + at[p])
+            at[p] = 0.0
+            for k in range(D):
+                grad[k, p] *= flow
+                zero[k, p] = 0.0
+        scatter_scalar(space, particles.x, first, count, at, zero, grad, rate)
+
+
+@role
+def exchange(surface, space, body, thermal, theta, rate, dt, work):
+    """rate_i -= dt sum S beta (theta_s - theta_out) w~; returns the heat gained [J]."""
+    raise TypeError(f"no exchange for {type(surface).__name__}")
+
+
+@exchange.register(NoExchange)
+def _(surface, space, body, thermal, theta, rate, dt, work):
+    return 0.0
+
+
+@exchange.register(Surface)
+def _(surface, space, body, thermal, theta, rate, dt, work):
+    D = directions(space)
+    x = body.particles.x
+    at, slope, grad, offset = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D], work[2 + 2 * D : 2 + 3 * D]
+    gained = 0.0
+    for s in range(surface.owner.shape[0]):
+        i = surface.owner[s]
+        area = area_and_offset(space, surface.F, body.particles.J, i, surface.area, surface.offset, s, offset)
+        gather_scalar(space, x, i, 1, theta, at, slope, grad)
+        there = at[0]
+        for k in range(D):
+            there += grad[k, 0] * offset[k, 0]
+            slope[k, 0] = 0.0
+        load = -dt * area * surface.beta[s] * (there - surface.outside[s])
+        at[0] = load
+        for k in range(D):
+            grad[k, 0] = load * offset[k, 0]
+        scatter_scalar(space, x, i, 1, at, slope, grad, rate)
+        gained += load
+    return gained
+
+
+@kernel
+def gather_heat(space, x, thermal, start, end, blend, affine, work):
+    """Particle temperatures and gradients from the nodes before and after."""
+    D = directions(space)
+    before, after, slope, grad = work[0], work[1], work[2 : 2 + D], work[2 + D : 2 + 2 * D]
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        gather_scalar(space, x, first, count, start, before, slope, grad)
+        gather_scalar(space, x, first, count, end, after, slope, grad)
+        for p in range(count):
+            i = first + p
+            old = thermal.theta[i]
+            change = after[p] - before[p] + blend * (before[p] - old)
+            thermal.theta[i] = old + rise(thermal.alpha, thermal.zero + old, value(thermal.alpha, thermal.zero + old) * change)
+            for k in range(D):
+                thermal.c[i, k] = affine * slope[k, p]
+
+

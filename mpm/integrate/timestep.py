@@ -1,0 +1,84 @@
+"""How long an explicit step may be: every limit of physics.md 6, and which one binds.
+
+elastic wave      1/2 h sqrt(R0/(d lam + 2 mu)) / sqrt(1 + eps_c) / sqrt(1 + |eps_min|)      isolated particles included
+advection         h/(2 |v|)                                                                  half a cell a step
+velocity gradient 1/(4 |grad v|)                                                             half of the guard in respond.py
+heat              1/(rate_conduction + rate_exchange), with
+conduction        kappa J/(0.4 R0 alpha h^2)
+surface exchange  2 beta/(R0 alpha h)                                                        beta in the step: large beta, small step
+
+The heat limits bound the sub-step of a heat step; heat steps themselves come at their own pace,
+PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and above 0.2 the error grows (physics.md 11).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mpm.integrate.respond import RATE, SPEED, STRAIN, SWELL
+from mpm.materials import moduli, value
+from mpm.state import Expansion, Heating, Thermal
+
+WAVE, CONDUCTION, EXCHANGE, PACE = 0.5, 0.4, 2.0, 0.15
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Seconds by name, for the mechanical step and for the heat sub-step; and the pace of heat steps."""
+
+    mechanical: dict[str, float]
+    heat: dict[str, float]
+    pace: float
+
+    def step(self) -> float:
+        """The largest stable mechanical step [s]."""
+        return min(self.mechanical.values(), default=float("inf"))
+
+    def substep(self) -> float:
+        """The largest stable heat sub-step [s]: the rates of conduction and exchange add."""
+        rate = sum(1.0 / limit for limit in self.heat.values() if limit > 0)
+        return 1.0 / rate if rate > 0 else float("inf")
+
+
+def limits(space, D, bodies, reports) -> Limits:
+    """Limits of the present state; `reports` hold speed, rate, strain and swelling of the last steps."""
+    h = space.h
+    mechanical, heat, pace = {}, {}, float("inf")
+
+    def keep(table, name, seconds):
+        if np.isfinite(seconds):
+            table[name] = min(table.get(name, float("inf")), float(seconds))
+
+    for body, report in zip(bodies, reports, strict=True):
+        R0 = float(body.particles.m[0] / body.particles.V0[0])
+        lam, mu = moduli(body.elastic)
+        soften = (1.0 + coupling(body, lam, mu, R0)) * (1.0 + abs(min(report[STRAIN], 0.0)))
+        keep(mechanical, "elastic wave", WAVE * h * np.sqrt(R0 / (D * lam + 2 * mu) / soften))
+        if report[SPEED] > 0:
+            keep(mechanical, "advection", 0.5 * h / np.sqrt(report[SPEED]))
+        if report[RATE] > 0:
+            keep(mechanical, "velocity gradient", 0.25 / report[RATE])
+        if isinstance(body.thermal, Thermal):
+            kappa, alpha = conductance(body.thermal)
+            J = max(report[SWELL], float(np.max(body.particles.J)))
+            keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
+            pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
+            beta = getattr(body.surface, "beta", np.zeros(0))
+            if beta.size and beta.max() > 0:
+                keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * float(beta.max()) * max(J, 1.0)))
+    return Limits(mechanical, heat, pace)
+
+
+def coupling(body, lam, mu, R0) -> float:
+    """Thermoelastic coupling number gamma^2 Theta/(R0 alpha (lam + 2 mu)): elastic heating stiffens the wave (physics.md 0)."""
+    if not (isinstance(body.expansion, Expansion) and isinstance(body.heating, Heating) and body.heating.gamma > 0):
+        return 0.0
+    theta = body.thermal.zero + float(np.max(body.thermal.theta))
+    return body.expansion.gamma * body.heating.gamma * theta / (R0 * value(body.thermal.alpha, theta) * (lam + 2 * mu))
+
+
+def conductance(thermal) -> tuple[float, float]:
+    """Largest kappa and smallest alpha among the particles' temperatures."""
+    low, high = float(np.min(thermal.theta)) + thermal.zero, float(np.max(thermal.theta)) + thermal.zero
+    between = np.linspace(low, high, 33)
+    return max(value(thermal.kappa, t) for t in between), min(value(thermal.alpha, t) for t in between)

@@ -1,0 +1,223 @@
+"""Observers of a run of moving bodies: series at the output times, probes, crossings, snapshots.
+
+A probe is a point of the body: the nearest particle at the start and the offset from it, so it moves with the material; its temperature is
+theta_p + c_p . offset. Crossings (`time_to`) are looked for after every heat step, linear in between.
+"""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mpm.boundary import extents
+from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses
+from mpm.outcome import Outcome
+from mpm.state import PAD, Axisymmetric, Expansion, Run, Thermal
+
+AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
+
+
+@dataclass
+class Watch:
+    """What to record. `exact(x (N, D), t) -> theta (N,)` where a config names its solution."""
+
+    probes: dict[str, np.ndarray] = field(default_factory=dict)
+    thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
+    snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # a subset of the output times
+    grid: tuple[str, ...] = ()
+    particles: tuple[str, ...] = ()
+    exact: Any = None
+
+
+def axis_names(space) -> tuple[str, ...]:
+    return ("r", "z") if isinstance(space, Axisymmetric) else AXES[len(grid_shape(space))]
+
+
+class Recorder:
+    """Collects a run's records and turns them into a Run."""
+
+    def __init__(self, scene):
+        self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
+        self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
+        self.times: list[float] = []
+        self.series: dict[str, list[float]] = {}
+        self.frames: list[tuple[float, dict, dict]] = []
+        self.places = {name: self.place(scene, np.asarray(x, float)) for name, x in scene.watch.probes.items()}
+        self.crossed = {name: math.nan for name, _, _ in scene.watch.thresholds}
+        self.seen = {probe: (0.0, self.probe(probe)) for _, probe, _ in scene.watch.thresholds}
+
+    @staticmethod
+    def place(scene, x):
+        """(body, particle, offset) of the particle nearest to x."""
+        best = None
+        for body in scene.bodies:
+            distance = np.sum((body.particles.x - x) ** 2, axis=1)
+            i = int(np.argmin(distance))
+            if best is None or distance[i] < best[0]:
+                best = (distance[i], body, i, x - body.particles.x[i])
+        return best[1:]
+
+    def probe(self, name: str) -> float:
+        body, i, offset = self.places[name]
+        if not isinstance(body.thermal, Thermal):
+            return body.thermal.temperature
+        return float(body.thermal.zero + body.thermal.theta[i] + body.thermal.c[i] @ offset)
+
+    def watch(self, scene, now: float) -> None:
+        """Look for crossings since the last heat step."""
+        for name, probe, kelvin in scene.watch.thresholds:
+            before, was = self.seen[probe]
+            value = self.probe(probe)
+            if math.isnan(self.crossed[name]) and (was - kelvin) * (value - kelvin) <= 0 and value != was:
+                self.crossed[name] = before + (now - before) * (kelvin - was) / (value - was)
+        self.seen = {probe: (now, self.probe(probe)) for probe in self.seen}
+
+    def record(self, scene, clock) -> None:
+        """One line of every series; a frame where one is due."""
+        self.times.append(clock.time)
+        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock)):
+            self.series.setdefault(name, []).append(float(value))
+        if np.any(np.isclose(scene.watch.snapshots, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])):
+            self.frames.append((clock.time, grid_fields(scene), particle_fields(scene)))
+
+    def mechanical(self, scene, clock):
+        """Sums and extrema of motion."""
+        axes = axis_names(scene.space)
+        x = np.concatenate([body.particles.x.astype(float) for body in scene.bodies])
+        v = np.concatenate([body.particles.v.astype(float) for body in scene.bodies])
+        m = np.concatenate([body.particles.m.astype(float) for body in scene.bodies])
+        J = np.concatenate([body.particles.J.astype(float) for body in scene.bodies])
+        V = np.concatenate([body.particles.V0.astype(float) for body in scene.bodies]) * J
+        yield "mass_total", np.sum(m)
+        yield "volume_total", np.sum(V)
+        for k, axis in enumerate(axes):
+            yield f"momentum_{axis}", np.sum(m * v[:, k])
+            yield f"position_mean_{axis}", np.sum(m * x[:, k]) / np.sum(m)
+            yield f"position_min_{axis}", np.min(x[:, k])
+            yield f"position_max_{axis}", np.max(x[:, k])
+            yield f"extent_{axis}", np.ptp(x[:, k])
+        yield "velocity_max", math.sqrt(np.max(np.sum(v * v, axis=1)))
+        yield "J_min", np.min(J)
+        yield "J_max", np.max(J)
+        motion = sum(kinetic(scene.space, body.particles) for body in scene.bodies)
+        elastic, pressure, strain = 0.0, 0.0, 0.0
+        for body in scene.bodies:
+            e = strains(scene.space, body.particles.B)
+            elastic += stored(body.elastic, e, body.particles.V0)
+            strain = max(strain, float(np.max(np.abs(e))))
+            tau = stresses(body.elastic, e, thermal_pressure(body))
+            pressure -= float(np.sum(body.particles.V0 * np.sum(tau, axis=1))) / 3
+        yield "pressure_mean", pressure / np.sum(V)
+        yield "strain_max", strain
+        yield "energy_kinetic", motion
+        yield "energy_elastic", elastic
+        yield "energy_total", motion + elastic - np.sum(m[:, None] * x * scene.gravity)
+        yield "dissipation_total", clock.dissipated
+
+    def thermal(self, scene, clock):
+        """Temperatures, the heat ledger, probes, errors."""
+        if not self.warm:
+            return
+        theta = np.concatenate([body.thermal.zero + body.thermal.theta.astype(float) for body in self.warm])
+        m = np.concatenate([body.particles.m for body in self.warm])
+        total = sum(heat_since(body, self.start[id(body)]) for body in self.warm)
+        yield "temperature_mean", np.sum(m * theta) / np.sum(m)
+        yield "temperature_min", np.min(theta)
+        yield "temperature_max", np.max(theta)
+        yield "heat_total", total
+        yield "heat_exchanged", clock.exchanged
+        yield "heat_ledger", total - clock.exchanged - clock.local
+        for name in self.places:
+            yield f"temperature_{name}", self.probe(name)
+        if scene.watch.exact is not None:
+            V = np.concatenate([body.particles.V0 * body.particles.J for body in self.warm])
+            error = theta - scene.watch.exact(np.concatenate([body.particles.x for body in self.warm]), clock.time)
+            yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
+            yield "error_max", np.max(np.abs(error))
+
+    def run(self, scene, clock, result: Outcome, wall_time: float) -> Run:
+        """The Run. Where it did not complete, the series stop at the last good record."""
+        series = {name: np.array(values) for name, values in self.series.items()}
+        finals = {name: float(values[-1]) for name, values in series.items()} | self.crossed
+        facts = dict(scene.facts, binds=max(clock.bound, key=clock.bound.get, default=""), bound_steps=clock.bound, heat_steps=clock.heat_steps,
+                     particles=sum(len(body.particles.m) for body in scene.bodies))  # fmt: skip
+        finals["steps"] = float(clock.steps or clock.heat_steps)
+        run = Run(result, np.array(self.times), series, finals, steps=clock.steps, wall_time=wall_time, facts=facts)
+        if self.frames:
+            run.snapshot_times = np.array([t for t, _, _ in self.frames])
+            run.grid = {name: np.stack([grid[name] for _, grid, _ in self.frames]) for name in self.frames[0][1]}
+            run.particles = [particles for _, _, particles in self.frames]
+            if run.grid:
+                run.axes = {name: np.arange(n - 2 * PAD) * scene.space.h for name, n in zip(axis_names(scene.space), grid_shape(scene.space), strict=True)}
+        return run
+
+
+def thermal_pressure(body) -> np.ndarray:
+    """gamma (Theta - Theta_0) of every particle [Pa]."""
+    if isinstance(body.expansion, Expansion):
+        return body.expansion.gamma * (body.thermal.theta.astype(float) + body.expansion.shift)
+    return np.zeros(len(body.particles.m))
+
+
+def grid_fields(scene) -> dict[str, np.ndarray]:
+    """Fields on the nodes inside the domain, last direction first ([z,] [y,] x), float32; NaN where no material is."""
+    shape = grid_shape(scene.space)
+    n = math.prod(extents(scene.space))
+
+    def gathered(weights):
+        nodes = np.zeros(n)
+        for body in scene.bodies:
+            nodal(scene.space, body.particles.x, np.ascontiguousarray(weights(body), dtype=float), nodes)
+        inner = nodes.reshape(shape)[tuple(slice(PAD, size - PAD) for size in shape)]
+        return inner.transpose(*range(len(shape) - 1, -1, -1))
+
+    mass = gathered(lambda body: body.particles.m)
+    volume = gathered(lambda body: body.particles.V0 * body.particles.J)
+    fields = {}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if "density" in scene.watch.grid:
+            fields["density"] = (mass / volume).astype(np.float32)
+        if "velocity" in scene.watch.grid:
+            for k, axis in enumerate(axis_names(scene.space)):
+                fields[f"velocity_{axis}"] = (gathered(lambda body, k=k: body.particles.m * body.particles.v[:, k]) / mass).astype(np.float32)
+        if "temperature" in scene.watch.grid:
+            heat = gathered(lambda body: body.particles.m * (temperatures(body)))
+            fields["temperature"] = (heat / mass).astype(np.float32)
+    return fields
+
+
+def temperatures(body) -> np.ndarray:
+    if isinstance(body.thermal, Thermal):
+        return body.thermal.zero + body.thermal.theta.astype(float)
+    return np.full(len(body.particles.m), body.thermal.temperature)
+
+
+def particle_fields(scene) -> dict[str, np.ndarray]:
+    """The particle fields asked for, bodies one after another."""
+    made = {
+        "position": lambda body: body.particles.x,
+        "velocity": lambda body: body.particles.v,
+        "temperature": temperatures,
+        "J": lambda body: body.particles.J,
+        "mass": lambda body: body.particles.m,
+        "pressure": lambda body: -principal_cauchy(scene, body).mean(axis=1),
+        "stress_mises": lambda body: mises(principal_cauchy(scene, body)),
+    }
+    fields = {}
+    for name in scene.watch.particles:
+        if name == "body":
+            fields[name] = np.concatenate([np.full(len(body.particles.m), k) for k, body in enumerate(scene.bodies)])
+        else:
+            fields[name] = np.concatenate([np.array(made[name](body)) for body in scene.bodies])
+    return fields
+
+
+def principal_cauchy(scene, body) -> np.ndarray:
+    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body))
+    return tau / body.particles.J[:, None]
+
+
+def mises(sigma: np.ndarray) -> np.ndarray:
+    """sqrt(3/2) |dev sigma|."""
+    return math.sqrt(1.5) * np.linalg.norm(sigma - sigma.mean(axis=1, keepdims=True), axis=1)

@@ -1,0 +1,163 @@
+"""Simulate a scene of moving bodies: particles, a grid, explicit steps.
+
+Every output interval is cut into equal heat steps, every heat step into equal mechanical steps, those into blocks that one compiled call
+advances. Blocks are cut by counts, never by the clock, so a run gives the same bits on any machine load.
+"""
+
+import math
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mpm.boundary import directions, extents
+from mpm.diagnostics import finite
+from mpm.integrate.explicit import advance
+from mpm.integrate.heat_step import heat_step
+from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
+from mpm.integrate.timestep import Limits, limits
+from mpm.observe import Recorder
+from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, Outcome, outcome
+from mpm.state import Run, Thermal
+from mpm.transfer import wants_change
+
+BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
+UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
+
+@dataclass
+class Scene:
+    """Moving bodies, ready to run. Arrays are the run's own: simulating changes them."""
+
+    space: Any
+    gradient: Any
+    scheme: Any
+    names: tuple[str, ...]
+    bodies: tuple
+    walls: np.ndarray  # (3, 2) kinds of mpm.boundary
+    gravity: np.ndarray  # (D,)
+    blend: float  # of the temperature transfer (integrate/heat_step.py)
+    affine: float
+    times: np.ndarray  # output times, the first 0 [s]
+    step: float | None  # None: automatic
+    safety: float
+    heat_step: float | None
+    watch: Any = None  # what to record: mpm.observe.Watch
+    facts: dict = field(default_factory=dict)
+
+class Clock:
+    """Counts, limits and accumulated sources of one run."""
+
+    def __init__(self, scene: Scene):
+        self.time, self.steps, self.heat_steps = 0.0, 0, 0
+        self.bound: dict[str, int] = {}
+        self.exchanged = self.gross = self.local = self.dissipated = 0.0
+        self.first_step: float | None = None
+        self.reports = np.zeros((len(scene.bodies), REPORT))
+        self.reset(scene)
+        for report, body in zip(self.reports, scene.bodies, strict=True):
+            report[SPEED] = float(np.max(np.sum(body.particles.v.astype(float) ** 2, axis=1)))
+            report[RATE] = float(np.max(np.abs(body.particles.C)))
+            report[SWELL] = float(np.max(body.particles.J))
+
+    def reset(self, scene: Scene) -> None:
+        self.reports[:] = 0.0
+        self.reports[:, PARTICLE] = -1
+
+    def gather(self, dt: float) -> None:
+        """After a block: rates from increments, and the heat and dissipation of its steps."""
+        self.reports[:, RATE] /= dt
+        self.local += float(np.sum(self.reports[:, HEATED]))
+        self.gross += float(np.sum(np.abs(self.reports[:, HEATED])))
+        self.dissipated += float(np.sum(self.reports[:, DISSIPATED]))
+
+def simulate(scene: Scene, beat=None) -> Run:
+    """Run the scene to its end or its failure. `beat(fraction, time) -> bool` is asked between blocks; true stops the run."""
+    began = time.perf_counter()
+    clock, recorder = Clock(scene), Recorder(scene)
+    buffers = work_arrays(scene)
+    result = outcome(COMPLETED)
+    recorder.record(scene, clock)
+    for end in scene.times[1:]:
+        result = interval(scene, clock, recorder, buffers, float(end), beat)
+        if not result.ok:
+            break
+        recorder.record(scene, clock)
+    return recorder.run(scene, clock, result, time.perf_counter() - began)
+
+def work_arrays(scene: Scene):
+    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, four scalars where there is heat."""
+    n, D = math.prod(extents(scene.space)), directions(scene.space)
+    dtype = scene.bodies[0].particles.x.dtype
+    nodes = np.zeros((2, n, D + 1), dtype)
+    force = np.zeros((2, n if wants_change(scene.scheme) else 0, D + 1), dtype)
+    warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
+    return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((4, n if warm else 0))
+
+def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) -> Outcome:
+    """Advance to the output time `end`."""
+    start, now = clock.time, limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+    pace = scene.heat_step or now.pace
+    heat_steps = max(1, math.ceil((end - start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
+    for k in range(heat_steps):
+        until = start + (end - start) * (k + 1) / heat_steps
+        warm_bodies(scene, clock, buffers, until - clock.time, now)
+        recorder.watch(scene, until)
+        result = march(scene, clock, buffers, until, beat)
+        if not result.ok:
+            return result
+        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+    return outcome(COMPLETED)
+
+def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> None:
+    """One heat step of every body that has heat, in as many sub-steps as the limits ask for."""
+    if not now.heat:
+        return
+    substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
+    for body in scene.bodies:
+        gained = heat_step(scene.space, body, buffers[3], scene.walls, dt, substeps, scene.blend, scene.affine)
+        clock.exchanged += gained
+        clock.gross += abs(gained)
+    clock.heat_steps += 1
+    if substeps > 1:
+        binding = min(now.heat, key=now.heat.get)
+        clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
+
+def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
+    """Mechanical steps up to `until`, in blocks."""
+    nodes, force, boxes, _ = buffers
+    particles = sum(len(body.particles.m) for body in scene.bodies)
+    most = max(1, min(BLOCK, BLOCK_WORK // particles))
+    while until - clock.time > 1e-12 * until:
+        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        step = scene.step or now.step() * scene.safety
+        clock.first_step = clock.first_step or step
+        if step < clock.first_step / UNDERFLOW:
+            return outcome(STEP_UNDERFLOW, time=clock.time, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
+        left = until - clock.time
+        count = max(1, math.ceil(left / step * (1 - 1e-9)))
+        dt, block = left / count, min(most, count)
+        binding = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
+        if count == 1 and left < step * (1 - 1e-9):
+            binding = "heat pace or output"
+        clock.bound[binding] = clock.bound.get(binding, 0) + block
+        clock.reset(scene)
+        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, block, clock.reports)
+        clock.gather(dt)
+        failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
+        if failed is not None:
+            report = clock.reports[failed]
+            clock.steps += int(report[STEP])
+            clock.time += dt * int(report[STEP])
+            detail = f"of {scene.names[failed]}" if len(scene.names) > 1 else ""
+            return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time, clock.steps, detail)
+        clock.steps += block
+        clock.time = until if block == count else clock.time + dt * block
+        for name, body in zip(scene.names, scene.bodies, strict=True):
+            bad = finite(body)
+            if bad:
+                return outcome(NON_FINITE, time=clock.time, step=clock.steps, detail=f"({bad} of {name})")
+        if beat is not None and beat(clock.time / float(scene.times[-1]), clock.time):
+            return outcome(BUDGET, time=clock.time, step=clock.steps)
+    return outcome(COMPLETED)
+
