@@ -167,19 +167,17 @@ def settle(law, h, low, high, theta):
             high = theta
         else:
             low = theta
-        new = between(low, high, theta - excess / value(law, theta))
-        if n >= 8 and n % 2 == 0:
-            new = 0.5 * (low + high)
-        if abs(new - theta) <= 4e-16 * abs(new):
-            return new
-        theta = new
+        step = excess / value(law, theta)
+        if abs(step) <= 1e-11 * abs(theta):  # a few nK: Newton's next step would be below round-off
+            return theta - step
+        theta = 0.5 * (low + high) if n >= 8 and n % 2 == 0 else between(low, high, theta - step)
     return theta
 
 
 @kernel(inline=True)
 def settle_from(law, h, guess, least):
-    """`settle` with the bracket that a lowest value `least` > 0 of the law gives."""
-    reach = guess + (h - enthalpy(law, guess)) / least
+    """`settle` with the bracket that a lowest value `least` > 0 of the law gives, twice as wide: Newton's step may land on its very end."""
+    reach = guess + 2.0 * (h - enthalpy(law, guess)) / least
     return settle(law, h, min(guess, reach), max(guess, reach), guess)
 
 
