@@ -77,7 +77,7 @@ def heat_since(body, start: np.ndarray) -> float:
     """Heat taken up since temperatures were `start` (less zero) [J]."""
     thermal, m = body.thermal, body.particles.m
     if isinstance(thermal.alpha, Constant):
-        return float(np.sum(m * thermal.alpha.value * (thermal.theta.astype(float) - start)))
+        return float(np.sum(m * thermal.alpha.constant * (thermal.theta.astype(float) - start)))
     return float(np.sum(m * (enthalpies(thermal.alpha, thermal.zero + thermal.theta.astype(float)) - enthalpies(thermal.alpha, thermal.zero + start))))
 
 

@@ -20,7 +20,7 @@ def rise(alpha, theta, heat):
 
 @rise.register(Constant)
 def _(alpha, theta, heat):
-    return heat / alpha.value
+    return heat / alpha.constant
 
 
 @role

@@ -7,7 +7,8 @@ and T = tan(phi) one equation in T is left; c, s = cos(phi), sin(phi).
 import math
 from typing import Any, NamedTuple
 
-from mpm.materials.ellipse import excess, invariants, slowness, strains, strict
+from mpm.jit import kernel
+from mpm.materials.ellipse import excess, invariants, slowness, strains
 from mpm.materials.roles import flow, moduli, value
 
 MOST = 200  # steps; 65 is the most seen
@@ -26,7 +27,7 @@ class EllipseClipped(NamedTuple):
     eta: Any  # [Pa s]
 
 
-@strict
+@kernel(inline=True)
 def angle(T):
     """cos and sin of atan T, each to round-off of its own."""
     if T <= 1.0:
@@ -37,7 +38,7 @@ def angle(T):
     return u * s, s
 
 
-@strict
+@kernel(inline=True)
 def balance(T, P, Q, p0, omega, w1, w2):
     """The two sides a, b of the equation in T, their slopes in ln T, and c, s, y, z = P - p/M. No difference of nearly equal numbers."""
     c, s = angle(T)
@@ -51,7 +52,7 @@ def balance(T, P, Q, p0, omega, w1, w2):
     return omega * shear, b, -omega * s * c * c, b + T * p0 * (dy * z + y * dz), c, s, y, z, shear
 
 
-@strict
+@kernel
 def tangent(P, Q, p0, omega, w1, w2):
     """The T of a trial state outside the ellipse, 0 < P, 0 < Q, and the number of steps (MOST: failed): Newton that a bracket keeps."""
     r = P / p0
@@ -83,7 +84,7 @@ def tangent(P, Q, p0, omega, w1, w2):
     return T, MOST
 
 
-@strict
+@kernel
 def map_clipped(p_trial, q_trial, K, mu, M, p0, eta, dt):
     """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST: failed."""
     P, Q, p0 = float(abs(p_trial) / M), float(q_trial / M), float(p0)
@@ -101,7 +102,7 @@ def map_clipped(p_trial, q_trial, K, mu, M, p0, eta, dt):
     return sign * M * p0 * y * c, M * s, sign * M * z, M * shear, steps
 
 
-@strict
+@kernel
 def strain_clipped(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
     """Mapped strains: (e1, e2, e3, dissipated, ok), the trial ones where nothing flows and where the map fails."""
     K = lam + 2.0 * mu / 3.0

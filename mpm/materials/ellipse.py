@@ -1,36 +1,32 @@
 """What both return maps share: invariants of the trial strain, the ellipse, and the strains that belong to mapped invariants (physics.md 5).
 
 p = -tr tau/3 (compression positive), q = sqrt(3/2) |dev tau|, both of the total Kirchhoff stress, thermal part included.
-Elastic where p^2/p0^2 + q^2 <= M^2.
+Elastic where p^2/p0^2 + q^2 <= M^2. Differences of nearly equal numbers are written so that they lose nothing; the house's flags, which let LLVM
+re-associate, leave that intact: tests/materials/test_extremes.py would show it (with `contract` alone the residuals and the times are the same).
 """
 
 import math
 
-from mpm.jit import FLAGS, njit
+from mpm.jit import kernel
 
 SQRT6 = math.sqrt(6.0)
 
 
-def strict(function):
-    """`kernel(inline=True)` without re-association: (Q - 1) + c^2/(1 + s) must not become (Q + c^2/(1 + s)) - 1, which loses the digits it is there for."""
-    return njit(cache=True, forceinline=True, **(FLAGS | {"fastmath": {"contract"}}))(function)
-
-
-@strict
+@kernel(inline=True)
 def excess(a, b):
     """a^2 + b^2 - 1 without cancellation at either axis."""
     high, low = max(a, b), min(a, b)
     return (high - 1.0) * (high + 1.0) + low * low
 
 
-@strict
+@kernel(inline=True)
 def invariants(e1, e2, e3, K, mu, thermal):
     """p and q [Pa] of principal strains, and the deviator, exactly zero for equal strains."""
     d1, d2, d3 = ((e1 - e2) + (e1 - e3)) / 3.0, ((e2 - e1) + (e2 - e3)) / 3.0, ((e3 - e1) + (e3 - e2)) / 3.0
     return thermal - K * (e1 + e2 + e3), SQRT6 * mu * math.sqrt(d1 * d1 + d2 * d2 + d3 * d3), d1, d2, d3
 
 
-@strict
+@kernel(inline=True)
 def slowness(K, eta, dt):
     """eta/(K dt), the inverse of chi: 0 without viscosity, inf where no time passes."""
     if eta == 0.0:
@@ -38,7 +34,7 @@ def slowness(K, eta, dt):
     return float(eta / (K * dt)) if dt > 0.0 else math.inf
 
 
-@strict
+@kernel(inline=True)
 def strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal):
     """Strains of mapped invariants, and the work p dp/K + q dq/(3 mu) that the map dissipates [J/m3]: exact, as dp and dq are."""
     share = q / q_trial if q_trial > 0.0 else 0.0

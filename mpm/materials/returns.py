@@ -23,6 +23,17 @@ def map_all(e, lam, mu, M, p0, eta, dt, thermal, clipped, out):
     return -1
 
 
+def admitted(name, x):
+    """What a parameter may be, in words, and where it is."""
+    if name in ("mu", "M", "p0"):
+        return f"a finite {name} > 0", np.isfinite(x) & (x > 0)
+    if name == "dt":
+        return "a finite dt >= 0", np.isfinite(x) & (x >= 0)
+    if name == "eta":
+        return "eta >= 0, inf included", x >= 0
+    return "a finite number", np.isfinite(x)
+
+
 def return_map(eps_trial, *, mu, lam, M, p0, eta, dt, form="radial", thermal_stress=0.0):
     """Elastic principal Hencky strains at the end of a step, from the trial ones: one implicit Euler step of viscoplastic flow on an ellipse.
 
@@ -54,13 +65,10 @@ def return_map(eps_trial, *, mu, lam, M, p0, eta, dt, form="radial", thermal_str
         raise ValueError(f"eps_trial has shape {eps.shape}: the last axis must hold the 3 principal strains")
     named = {"lam": lam, "mu": mu, "M": M, "p0": p0, "eta": eta, "dt": dt, "thermal_stress": thermal_stress}
     values = {name: np.asarray(x, dtype=np.float64) for name, x in named.items()}
-    positive = {name: f"{name} > 0" for name in ("mu", "M", "p0")} | {name: f"{name} >= 0" for name in ("eta", "dt")}
     for name, x in values.items():
-        finite = ~np.isnan(x) if name == "eta" else np.isfinite(x)
-        sign = x > 0 if name in ("mu", "M", "p0") else (x >= 0 if name in positive else True)
-        if not np.all(finite & sign):
-            worst = x[~(finite & sign)].flat[0] if x.ndim else x
-            raise ValueError(f"{name} = {worst}: allowed is {positive.get(name, 'a finite number')}{'' if name == 'eta' else ', finite' * (name in positive)}")
+        allowed, good = admitted(name, x)
+        if not np.all(good):
+            raise ValueError(f"{name} = {np.atleast_1d(x)[~np.atleast_1d(good)][0]}: allowed is {allowed}")
     if not np.all(np.isfinite(eps)):
         raise ValueError("eps_trial: allowed are finite strains")
     if not np.all(3 * values["lam"] + 2 * values["mu"] > 0):

@@ -32,6 +32,9 @@ class Shape:
     def inside(self, x: np.ndarray) -> np.ndarray:
         return self.distance(x) < 0
 
+    def faces(self, normal: np.ndarray, side: str) -> np.ndarray:
+        return on_side(normal, side)
+
     def pieces(self):
         """Boundary of a plane shape, the inside on the left."""
         raise NotImplementedError(f"{type(self).__name__} is not a plane shape")
@@ -211,10 +214,10 @@ KINDS = {"box": Box, "ball": Ball, "cylinder": Cylinder, "ring": Ring, "polygon"
 
 
 def shape(model, dimension=None) -> Shape:
-    """The shape that a config names: `{"ball": {"centre": [0, 0], "radius": 1.0}}`, a model that dumps to it, or a Shape already."""
+    """The shape that a config names: `{"ball": {"centre": [0, 0], "radius": 1.0}}`, a model with a `kind`, or a Shape already."""
     if isinstance(model, Shape):
         return model
-    given = model if isinstance(model, dict) else model.model_dump()
+    given = model if isinstance(model, dict) else {model.kind: model.model_dump()}
     (kind, values), *more = [(k, v) for k, v in given.items() if v is not None]
     if more or kind not in KINDS:
         raise ValueError(f"a shape is one of {', '.join(KINDS)}, not {', '.join(given)}")

@@ -1,0 +1,234 @@
+"""From a validated experiment to a scene of moving bodies: sample shapes, make laws, place surfaces.
+
+Bodies are sampled by cut cells (mpm.scene.cut): one particle a particle cell at the centroid of what the shape fills, so volume, first moment and
+surface are right at any offset to the grid. Only what the config names is made.
+"""
+
+import math
+
+import numpy as np
+
+from mpm.boundary import KINDS
+from mpm.materials import Bump, Constant, EllipseRadial, Hencky, Logistic, NoFlow, table
+from mpm.observe import Watch
+from mpm.scene.shapes import cells, on_side, shape
+from mpm.simulation import Scene
+from mpm.state import (
+    PAD,
+    Axisymmetric,
+    Body,
+    Expansion,
+    Heating,
+    Isothermal,
+    Line,
+    NoExchange,
+    NoExpansion,
+    NoHeating,
+    Particles,
+    Plane,
+    Surface,
+    Thermal,
+    Volume,
+)  # fmt: skip
+from mpm.transfer import Apic, Bspline, Flip, Mls
+
+SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
+         3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
+STRAINS = {1: 3, 2: 4, 3: 6}
+
+
+class SceneError(ValueError):
+    """A valid config that no method here can run; the message says what to change."""
+
+
+def law(model):
+    """The run-time law of a config's law."""
+    kind = type(model).kind
+    if kind == "constant":
+        return Constant(float(model.value))
+    if kind == "table":
+        return table(model.temperature, model.value, model.interpolation)
+    if kind == "bump":
+        return Bump(model.base, model.heat, model.at, model.width)
+    return Logistic(model.low, model.high, model.at, model.width)
+
+
+def output_times(experiment) -> np.ndarray:
+    """0, every, 2 every, ..., end."""
+    end, every = experiment.time.end, experiment.output.every
+    count = max(1, math.ceil(end / every * (1 - 1e-9)))
+    return np.append(np.arange(count) * every, end)
+
+
+def grid_space(experiment):
+    """The grid: nodes on the lines of the domain, PAD beyond each face."""
+    grid = experiment.grid
+    count = [round(size / grid.cell) for size in grid.size]
+    for size, n in zip(grid.size, count, strict=True):
+        if abs(n * grid.cell - size) > 1e-6 * grid.cell:
+            raise SceneError(f"grid.size {size:g} m is no whole number of cells of {grid.cell:g} m: walls stand on grid lines; change grid.cell or grid.size")
+    nodes = [n + 1 + 2 * PAD for n in count]
+    kind = {1: Line, 2: Plane, "axisymmetric": Axisymmetric, 3: Volume}[grid.dimension]
+    return kind(grid.cell, *nodes)
+
+
+def sample(experiment, body):
+    """Cut cells of a body, in the grid's coordinates."""
+    grid, method = experiment.grid, experiment.method
+    outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
+    lower, upper = outline.bounds()
+    edge = grid.cell / method.particles
+    for low, high, size in zip(lower, upper, grid.size, strict=True):
+        if low < -1e-9 * size or high > size * (1 + 1e-9):
+            raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
+    edges = [np.arange(math.floor(low / edge + 1e-9), math.ceil(high / edge - 1e-9) + 1) * edge for low, high in zip(lower, upper, strict=True)]
+    return cells(outline, edges, radial=grid.dimension == "axisymmetric")
+
+
+def elastic_law(model) -> Hencky:
+    """Lame constants of whichever pair was given."""
+    if model.E is not None:
+        E = float(model.E.value)
+        return Hencky(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
+    if model.lam is not None:
+        return Hencky(model.mu, model.lam)
+    return Hencky(model.mu, model.K - 2 * model.mu / 3)
+
+
+def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
+    """gamma [Pa/K] = 3 K alpha_L = c lam (physics.md 0)."""
+    kind = type(expansion).kind
+    if kind == "linear":
+        return 3 * (elastic.lam + 2 * elastic.mu / 3) * expansion.coefficient
+    return expansion.gamma if kind == "modulus" else expansion.c * elastic.lam
+
+
+def moving_body(experiment, name: str, zero: float) -> Body:
+    """Particles and laws of one body."""
+    config = experiment.bodies[name]
+    material = experiment.materials[config.material]
+    cut = sample(experiment, config)
+    dtype = np.dtype(experiment.method.precision)
+    N, D = cut.centroid.shape
+    x = cut.centroid
+    v, C = np.zeros((N, D)), np.zeros((N, D, D))
+    if config.velocity is not None:
+        v += config.velocity
+    if config.angular_velocity is not None:
+        spin = spin_tensor(config.angular_velocity, D)
+        v += (x - np.average(x, axis=0, weights=cut.volume)) @ spin.T
+        C += spin
+    J = np.ones(N)
+    arrays = (x, v, C, np.zeros((N, STRAINS[D])), J, material.density * cut.volume, cut.volume)
+    particles = Particles(*(np.ascontiguousarray(a, dtype=dtype) for a in arrays))
+    elastic = elastic_law(material.elastic)
+    flow = NoFlow()
+    if material.flow is not None:
+        flow = EllipseRadial(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+    thermal, surface, expansion, heating = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating()
+    if material.heat is not None:
+        theta = np.full(N, config.temperature - zero, dtype)
+        thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
+        surface = exchanging_surface(experiment, name, cut, zero, dtype)
+    if material.expansion is not None:
+        expansion = Expansion(stress_temperature_modulus(material.expansion, elastic), zero - material.expansion.reference)
+    if material.heating is not None:
+        gamma = expansion.gamma if material.heating.elastic is not None else 0.0
+        heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
+    return Body(particles, thermal, surface, elastic, flow, expansion, heating)
+
+
+def spin_tensor(omega, D: int) -> np.ndarray:
+    """W with W x = omega cross x."""
+    if D == 2:
+        return np.array([[0.0, -omega], [omega, 0.0]])
+    a, b, c = omega
+    return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
+
+
+def exchanging_surface(experiment, name: str, cut, zero: float, dtype):
+    """The pieces of a body's surface that the config gives an exchange; where several entries meet a piece, both act."""
+    owner, area, offset, beta, outside = [], [], [], [], []
+    for entry in experiment.surfaces:
+        if entry.of != name or entry.convection is None or entry.convection.beta == 0:
+            continue
+        if math.isinf(entry.convection.beta):
+            raise SceneError("beta = inf needs implicit heat, which bodies that move do not have yet: use a rigid body (no `elastic`), or a finite beta")
+        chosen = np.flatnonzero(on_side(cut.normal, entry.side))
+        owner.append(cut.owner[chosen])
+        area.append(cut.area[chosen, None] * cut.normal[chosen])
+        offset.append(cut.point[chosen] - cut.centroid[cut.owner[chosen]])
+        beta.append(np.full(len(chosen), entry.convection.beta))
+        outside.append(np.full(len(chosen), entry.convection.outside - zero))
+    if not owner or not sum(map(len, owner)):
+        return NoExchange()
+    D = cut.centroid.shape[1]
+    F = np.tile(np.eye(D, dtype=dtype), (len(cut.volume), 1, 1))
+    return Surface(F, np.concatenate(owner), np.concatenate(area), np.concatenate(offset), np.concatenate(beta), np.concatenate(outside))
+
+
+def schemes(experiment):
+    """Transfer of velocity, and blend and affine part of the transfer of temperature."""
+    velocity, temperature = experiment.method.transfer, experiment.method.temperature
+    scheme = {"apic": Apic, "flip": lambda: Flip(velocity.blend, 0.0), "pic": lambda: Flip(1.0, 0.0)}[type(velocity).kind]()
+    blend, affine = {"apic": (1.0, 1.0), "flip": (getattr(temperature, "blend", 0.0), 0.0), "pic": (1.0, 0.0)}[type(temperature).kind]
+    return scheme, blend, affine
+
+
+def wall_kinds(experiment) -> np.ndarray:
+    """(3, 2) kinds; slip where the config says nothing, and on the axis."""
+    kinds = np.full((3, 2), KINDS["slip"])
+    for number, side in enumerate(SIDES[experiment.grid.dimension]):
+        if side in experiment.walls:
+            kinds[number // 2, number % 2] = KINDS[type(experiment.walls[side]).kind]
+    return kinds
+
+
+def build(experiment, exact=None) -> Scene:
+    """The scene of one point. SceneError where no method here can run it."""
+    names = tuple(experiment.bodies)
+    rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
+    if rigid:
+        raise SceneError(f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
+    space = grid_space(experiment)
+    zero = next(iter(experiment.bodies.values())).temperature
+    scheme, blend, affine = schemes(experiment)
+    D = experiment.grid.directions
+    times = output_times(experiment)
+    return Scene(
+        space=space,
+        gradient=Mls() if experiment.method.gradient == "mls" else Bspline(),
+        scheme=scheme,
+        names=names,
+        bodies=tuple(moving_body(experiment, name, zero) for name in names),
+        walls=wall_kinds(experiment),
+        gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * D),
+        blend=blend,
+        affine=affine,
+        times=times,
+        step=None if experiment.time.step == "auto" else experiment.time.step,
+        safety=experiment.time.safety,
+        heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
+        watch=watch(experiment, times, exact),
+    )
+
+
+def watch(experiment, times: np.ndarray, exact=None) -> Watch:
+    """What the config asks to record."""
+    from mpm.records.variables import dataset_name, threshold
+
+    shift = np.array(experiment.method.offset) * experiment.grid.cell
+    found = [(dataset_name(name), threshold(name)) for name in experiment.output.observables if threshold(name) is not None]
+    snapshots = experiment.output.snapshots
+    due = np.zeros(0)
+    if snapshots is not None:
+        wanted = np.append(np.arange(0.0, times[-1] * (1 - 1e-9), snapshots.every), times[-1])
+        due = times[np.unique(np.argmin(np.abs(times[:, None] - wanted), axis=0))]
+    return Watch(
+        probes={name: np.array(x) + shift for name, x in experiment.output.probes.items()},
+        thresholds=[(name, at.probe, at.kelvin) for name, at in found],
+        snapshots=due,
+        grid=snapshots.grid if snapshots else (),
+        particles=snapshots.particles if snapshots else (),
+        exact=exact,
+    )
