@@ -53,7 +53,7 @@ def assemble(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> by
 def dataset(plan: Any, about: dict, records: dict[str, Any], damaged: dict[str, str], files: dict[str, str] | None) -> bytes:
     """The dataset of a plan from its records by run id; `files` instead of fields where those stay outside."""
     table = Table(plan, records)
-    root = table.root(damaged, about["swept"], about["resolved"])
+    root = table.root(damaged, about["swept"])
     groups = {"/": root, "series": table.series(), "grid": table.grid(files), "particles": table.particles(files)}
     return to_bytes(groups, attributes(about, plan, records))
 
@@ -106,7 +106,7 @@ class Table:
         """Names in any record, in the order they are first seen."""
         return list({name: None for record in self.records for name in getattr(record, attribute)})
 
-    def root(self, damaged: dict[str, str], swept: list[str], resolved: dict) -> Group:
+    def root(self, damaged: dict[str, str], swept: list[str]) -> Group:
         """One number a point."""
         from mpm.sweep.coordinates import fixed, planned
 
@@ -124,7 +124,7 @@ class Table:
                     finals[name][index] = value
         flags = {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)}
         columns = {"status": status, "error": error, "outcome": outcome, "run_id": run_id, "steps": steps, "wall_time": wall, "attempts": attempts, **finals}
-        group = Group(planned(self.plan) | fixed(self.plan, swept, resolved, set(columns) | set(self.names("series"))))
+        group = Group(planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.names("series"))))
         coordinates = " ".join(name for name in group.variables if name not in self.dims)
         for name, values in columns.items():
             group.variables[name] = described(name, self.dims, values, **(flags if name == "status" else {}))

@@ -1,0 +1,31 @@
+"""mpm compare: same or not."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from mpm_cli.options import Json
+from mpm_cli.talk import document, say
+
+Place = Annotated[Path, typer.Argument(help="Dataset, or the folder of one.", show_default=False)]
+
+
+def compare(
+    a: Place,
+    b: Place,
+    rtol: Annotated[float, typer.Option(min=0, help="Relative tolerance.")] = 0.0,
+    atol: Annotated[float, typer.Option(min=0, help="Absolute tolerance.")] = 0.0,
+    as_json: Json = False,
+) -> None:
+    """Tell whether two datasets hold the same.
+
+    Wall times, attempts and provenance do not count. Exit code 0: same, 1: different.
+    """
+    from mpm.sweep.compare import compare as differences
+
+    found = differences(a, b, rtol, atol)
+    if as_json:
+        document({"same": not found, "differences": found})
+    else:
+        say("\n".join(found) or "same")
+    raise typer.Exit(int(bool(found)))

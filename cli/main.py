@@ -1,0 +1,81 @@
+"""The command `mpm`: registers a file a command, and turns whatever happens into words and an exit code. No user sees a traceback.
+
+Exit codes   0 ok; 1 internal error, disk, or (compare) different; 2 usage or config; 3 some points failed; 4 every point failed; 75, 130, 143 stopped
+"""
+
+import os
+import sys
+import tempfile
+import traceback
+
+import typer
+from mpm_cli.collect import collect
+from mpm_cli.compare import compare
+from mpm_cli.info import info
+from mpm_cli.plan import plan
+from mpm_cli.plot import plot
+from mpm_cli.run import run
+from mpm_cli.schema import schema
+from mpm_cli.status import status
+from mpm_cli.sweep import sweep
+from mpm_cli.talk import warn
+from mpm_cli.warmup import warmup
+
+COMMANDS = (run, sweep, plan, status, collect, compare, plot, schema, info, warmup)
+UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
+
+app = typer.Typer(
+    name="mpm",
+    help="Batch experiments in thermomechanical material point simulation.",
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in COMMANDS:
+    app.command(command.__name__)(command)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a command and return its exit code."""
+    try:
+        return int(typer.main.get_command(app).main(arguments, prog_name="mpm", standalone_mode=False) or 0)
+    except UsageError as error:
+        usage = error.ctx.get_usage() + "\n" if error.ctx and len(sys.argv) > 1 else ""
+        warn(f"{usage}error: {error.format_message()}" if usage else error.format_message())
+        return 2
+    except (KeyboardInterrupt, typer.Abort):
+        warn("stopped")
+        return 130
+    except BrokenPipeError:  # the reader of our output left, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except Exception as error:
+        return told(error)
+
+
+def told(error: Exception) -> int:
+    """An exception in words, and its exit code."""
+    from mpm.sweep.executors import BrokenWorkers
+    from mpm.sweep.store import Refused
+
+    config_error = getattr(sys.modules.get("mpm.config"), "ConfigError", ())
+    if isinstance(error, config_error) or isinstance(error, Refused):
+        warn(str(error))
+        return 2
+    if isinstance(error, BrokenWorkers):
+        warn(f"error: {error}")
+        return 1
+    if isinstance(error, OSError) and error.filename is not None:
+        warn(f"error: {error.filename}: {error.strerror}")
+        return 1
+    return internal(error)
+
+
+def internal(error: Exception) -> int:
+    """Our own fault: one line here, the trace (without values) in a file."""
+    with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8") as file:
+        traceback.print_exception(error, file=file)
+    warn(f"internal error: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
+    return 1

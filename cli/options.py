@@ -1,0 +1,73 @@
+"""Options that commands share: their types, and the words of their help."""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+UNITS = {"s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
+
+
+def seconds(text: str) -> float:
+    """`90`, `90s`, `1.5min`, `2h` in seconds."""
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*(s|min|m|h|d)?\s*", text)
+    if match is None or float(match[1]) == 0:
+        raise typer.BadParameter(f"{text!r} is not a duration; say 90, 90s, 5min or 2h")
+    return float(match[1]) * UNITS[match[2] or "s"]
+
+
+def workers(text: str) -> int:
+    """`auto` (one a core) or a number of worker processes."""
+    from mpm.records.provenance import cores
+
+    if text == "auto":
+        return cores()
+    if not re.fullmatch(r"[1-9]\d{0,3}", text):
+        raise typer.BadParameter(f"{text!r} is not a number of workers; say auto, 1, 2, ...")
+    return int(text)
+
+
+Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of the experiment.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a sweep.", show_default=False)]
+Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", help="Folder for results.  [default: results/<config name>]", show_default=False)]
+Jobs = Annotated[int, typer.Option("-j", "--jobs", metavar="N|auto", parser=workers, help="Worker processes; auto is one a core.")]
+Set = Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Set a parameter; repeat for more.", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, talk on stderr.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Say only what went wrong.")]
+MaxRuns = Annotated[int, typer.Option("--max-runs", metavar="N", min=1, help="Refuse sweeps of more points.")]
+Smoke = Annotated[bool, typer.Option("--smoke", help="Coarse and short: apply the config's smoke section.")]
+
+
+def limit(help_: str) -> Any:
+    """An option that holds a duration."""
+    return typer.Option(metavar="T", parser=seconds, show_default=False, help=help_)
+
+
+def overrides(pairs: list[str] | None) -> dict[str, Any]:
+    """`path=value` pairs as a mapping; a value is read as YAML would read it."""
+    found: dict[str, Any] = {}
+    for pair in pairs or []:
+        path, sign, text = pair.partition("=")
+        if not sign or not path.strip():
+            raise typer.BadParameter(f"--set {pair!r}: say PATH=VALUE, as --set time.end=60 or --set 'beta=13 W/m**2/K'")
+        found[path.strip()] = value(text.strip())
+    return found
+
+
+def value(text: str) -> Any:
+    """A number, truth, null, a list or mapping where the text is one in YAML 1.2; else the text."""
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        return YAML(typ="safe", pure=True).load(text)
+    except YAMLError:
+        return text
+
+
+def load(config: Path, pairs: list[str] | None, smoke: bool = False) -> Any:
+    """The experiment that a command is about."""
+    from mpm.config import load as read
+
+    return read(config, overrides(pairs), smoke=smoke)

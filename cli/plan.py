@@ -1,0 +1,25 @@
+"""mpm plan: what a sweep would do. Runs nothing, writes nothing."""
+
+from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Set, Smoke, load
+from mpm_cli.sweep import Rerun
+from mpm_cli.talk import document, say
+
+
+def plan(
+    config: Config,
+    out: Out = None,
+    jobs: Jobs = "auto",
+    set_: Set = None,
+    rerun: Rerun = None,
+    max_runs: MaxRuns = 10_000,
+    smoke: Smoke = False,
+    as_json: Json = False,
+) -> None:
+    """Say what a sweep would do.
+
+    Points and which are there, the physics that is compiled, the time-step limits and which binds, time, memory and bytes. Runs nothing.
+    """
+    from mpm.sweep.outlook import outlook, said
+
+    found = outlook(load(config, set_, smoke), out, jobs, rerun, max_runs)
+    document(found) if as_json else say(said(found))

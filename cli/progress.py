@@ -1,0 +1,125 @@
+"""Progress: a bar with the time left on a terminal; plain lines, one a finished point, off it or with CI, NO_COLOR or TERM=dumb."""
+
+import os
+import sys
+import time
+from typing import Any, TextIO
+
+from mpm.sweep.report import Reporter
+
+
+def reporter(as_json: bool, quiet: bool) -> Reporter:
+    """The reporter that fits the place where a command runs."""
+    stream = sys.stderr if as_json else sys.stdout
+    if quiet:
+        return Plain(sys.stderr, failures_only=True)
+    plain = not stream.isatty() or os.environ.get("TERM") == "dumb" or any(os.environ.get(name) for name in ("CI", "NO_COLOR"))
+    return Plain(stream) if plain else Bar(stream)
+
+
+def told(label: str, line: dict, again: bool) -> str:
+    """A finished point in a line."""
+    name = label or line["run_id"]
+    if line["status"] == 0:
+        return f"{name}: ok, {line['steps']} steps, {line['wall_time']:.3g} s"
+    return f"{name}: {line['error']}" + ("; trying again" if again else "")
+
+
+class Plain(Reporter):
+    """Lines, flushed as they come."""
+
+    def __init__(self, stream: TextIO, failures_only: bool = False):
+        self.stream, self.failures_only = stream, failures_only
+        self.total = self.done = 0
+
+    def write(self, text: str) -> None:
+        self.stream.write(text + "\n")
+        self.stream.flush()
+
+    def start(self, total: int, done: int, jobs: int) -> None:
+        self.total, self.done = total, done
+        if not self.failures_only:
+            self.write(f"{total} points, {done} already there" + (f", {jobs} workers" if total > done else ""))
+
+    def finished(self, label: str, line: dict, again: bool) -> None:
+        self.done += not again
+        if not self.failures_only or line["status"] != 0:
+            self.write(f"[{self.done}/{self.total}] {told(label, line, again)}")
+
+    def note(self, text: str) -> None:
+        self.write(text)
+
+
+class Bar(Reporter):
+    """A rich progress bar: points done, failed, running, time left. Failures are lines above it."""
+
+    def __init__(self, stream: TextIO):
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+        self.console = Console(file=stream, highlight=False, soft_wrap=True)
+        columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
+        self.progress = Progress(*columns, console=self.console, transient=True)
+        self.done = self.failed = self.total = self.ran = 0
+        self.began = time.monotonic()
+
+    def start(self, total: int, done: int, jobs: int) -> None:
+        self.total, self.done = total, done
+        self.task = self.progress.add_task("starting workers", total=total, completed=done, left="")
+        self.progress.start()
+        self.began = time.monotonic()
+
+    def beat(self, running: dict[str, float]) -> None:
+        parts = self.ran + sum(running.values())
+        elapsed = time.monotonic() - self.began
+        left = f"{clock(elapsed / parts * (self.total - self.done - sum(running.values())))} left" if parts > 0.01 else ""
+        failed = f", [red]{self.failed} failed[/red]" if self.failed else ""
+        said = f"{len(running)} running{failed}" if running else "starting workers, compiling where needed"
+        self.progress.update(self.task, completed=self.done + sum(running.values()), description=said, left=left)
+
+    def finished(self, label: str, line: dict, again: bool) -> None:
+        self.done += not again
+        self.ran += not again
+        if line["status"] != 0:
+            self.failed += not again
+            self.say(told(label, line, again))
+        self.progress.update(self.task, completed=self.done)
+
+    def note(self, text: str) -> None:
+        self.say(text)
+
+    def say(self, text: str) -> None:
+        """A line above the bar, as it is: no markup is read from it."""
+        self.console.print(text, markup=False)
+
+    def close(self) -> None:
+        self.progress.stop()
+
+
+def clock(seconds: float) -> str:
+    """`1:05:07`, `5:07`."""
+    minutes, rest = divmod(int(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+class Single:
+    """Progress of one run in this process: `beat` for `run_point`; Ctrl-C stops at the next beat, a second one at once."""
+
+    def __init__(self, as_json: bool, quiet: bool):
+        self.reporter = reporter(as_json, quiet)
+        self.reporter.start(1, 0, 1)
+        self.stopped = ""
+
+    def signal(self, kind: str) -> None:
+        if self.stopped:
+            raise KeyboardInterrupt
+        self.stopped = kind
+
+    def beat(self, fraction: float, when: float) -> bool:
+        self.reporter.beat({"": fraction})
+        return bool(self.stopped)
+
+    def finished(self, record: Any) -> None:
+        self.reporter.finished("", record.line, False)
+        self.reporter.close()

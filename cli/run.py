@@ -1,0 +1,45 @@
+"""mpm run: one point, in this process."""
+
+from pathlib import Path
+
+import typer
+from mpm_cli.options import Config, Json, MaxRuns, Out, Quiet, Set, Smoke, load
+from mpm_cli.progress import Single
+from mpm_cli.talk import document, say
+
+
+def run(
+    config: Config,
+    out: Out = None,
+    set_: Set = None,
+    smoke: Smoke = False,
+    max_runs: MaxRuns = 10_000,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run one point to OUT/run.nc.
+
+    Of a config with a sweep it is the first; --set chooses another. Exit codes: 0 ok; 2 usage or config; 4 the point failed; 130 Ctrl-C.
+    """
+    from mpm.records.netcdf import seal, write_whole
+    from mpm.records.variables import STATUS
+    from mpm.sweep.api import default_out, run_one, signals
+
+    experiment = load(config, set_, smoke)
+    folder: Path = out or default_out(experiment)
+    progress = Single(as_json, quiet)
+    try:
+        with signals(progress.signal):
+            data, record = run_one(experiment, progress.beat, max_runs)
+    finally:
+        progress.reporter.close()
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / "run.nc", seal(data, record.line))
+    progress.finished(record)
+    if as_json:
+        document({"out": folder, "dataset": folder / "run.nc", **record.line, "status": STATUS[record.status], "finals": record.finals, "facts": record.facts})
+    else:
+        for name, value in record.finals.items():
+            say(f"  {name} = {value:.9g}", quiet=quiet)
+        say(f"{folder / 'run.nc'}", quiet=quiet)
+    raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 0 if record.status == 0 else 4))

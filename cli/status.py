@@ -1,0 +1,16 @@
+"""mpm status: what is done."""
+
+from mpm_cli.options import Folder, Json
+from mpm_cli.talk import document, say
+
+
+def status(out: Folder, as_json: Json = False) -> None:
+    """Say what a sweep's folder holds.
+
+    Counts, failures grouped by reason, slowest points, points that other source made, who is at work there.
+    """
+    from mpm.sweep.status import said
+    from mpm.sweep.status import status as status_of
+
+    found = status_of(out)
+    document(found) if as_json else say(said(found))

@@ -1,0 +1,111 @@
+"""mpm sweep: every point, over processes; the same command again continues or does nothing."""
+
+from typing import Annotated, Any
+
+import typer
+from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, limit, load
+from mpm_cli.progress import reporter
+from mpm_cli.talk import document, say, warn
+
+RERUN = ("failed", "stale", "all")
+
+
+def which(text: str) -> str:
+    """A value of --rerun."""
+    if text not in RERUN:
+        raise typer.BadParameter(f"{text!r}: say failed, stale or all")
+    return text
+
+
+AGAIN = "Run finished points again: those that are not ok; those that other source made; all."
+RETRIES = "Tries again of a killed or timed-out point.  [default: 3 killed, 0 timed out]"
+Rerun = Annotated[str | None, typer.Option(metavar="failed|stale|all", parser=which, help=AGAIN, show_default=False)]
+
+
+def sweep(
+    config: Config,
+    out: Out = None,
+    jobs: Jobs = "auto",
+    set_: Set = None,
+    rerun: Rerun = None,
+    timeout: Annotated[float | None, limit("Stop a point after this long: 90, 90s, 5min, 2h.")] = None,
+    retries: Annotated[int | None, typer.Option(metavar="N", min=0, help=RETRIES, show_default=False)] = None,
+    time_budget: Annotated[float | None, limit("Stop the sweep after this long; run again to go on.")] = None,
+    fail_fast: Annotated[bool, typer.Option("--fail-fast", help="Stop at the first point that is not ok.")] = False,
+    max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
+    max_runs: MaxRuns = 10_000,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
+    smoke: Smoke = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run every missing point and assemble OUT/sweep.nc.
+
+    Points run over processes; the same command again goes on, or does nothing where all is there.
+    Exit codes: 0 all ok; 2 usage or config; 3 some points failed; 4 every point failed; 75 time budget reached; 130 Ctrl-C; 143 SIGTERM.
+    """
+    if dry_run:
+        from mpm_cli.plan import plan
+
+        plan(config, out, jobs, set_, rerun, max_runs, smoke, as_json)
+        return
+    from mpm.sweep.api import default_out, execute
+    from mpm.sweep.engine import Options
+
+    experiment = load(config, set_, smoke)
+    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke)
+    result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
+    picture = draw(result, quiet)
+    if as_json:
+        document(summary(result, picture))
+    else:
+        for line in words(result, picture, config):
+            say(line, quiet=quiet and result.exit_code == 0)
+    raise typer.Exit(result.exit_code)
+
+
+def draw(result: Any, quiet: bool) -> Any:
+    """OUT/sweep.png, where it is missing or older than the dataset."""
+    picture, dataset = result.out / "sweep.png", result.out / "sweep.nc"
+    if result.stopped == "terminated" or not dataset.exists():
+        return None
+    if not result.collected and picture.exists():
+        return picture
+    from mpm.plots import overview
+    from mpm.sweep.api import tree_of
+
+    overview(tree_of(dataset), picture)
+    return picture
+
+
+def summary(result: Any, picture: Any) -> dict[str, Any]:
+    """The JSON document."""
+    from mpm.records.variables import STATUS
+
+    failures = [{"run_id": run_id, "status": STATUS[line["status"]], "error": line["error"]} for run_id, line in result.lines.items() if line["status"]]
+    return {
+        "out": result.out,
+        "dataset": result.out / "sweep.nc",
+        "picture": picture,
+        "points": sum(result.counts.values()),
+        "counts": result.counts,
+        "ran": result.ran,
+        "failures": failures,
+        "stopped": result.stopped or None,
+        "seconds": result.seconds,
+        "exit_code": result.exit_code,
+    }
+
+
+def words(result: Any, picture: Any, config: Any) -> list[str]:
+    """The same for people."""
+    told = [", ".join(f"{count} {name}" for name, count in result.counts.items() if count) + f"; {result.ran} run now, {result.seconds:.1f} s"]
+    told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None]
+    if result.counts["pending"]:
+        told.append(f"{result.counts['pending']} points are left: the same command goes on (mpm sweep {config})")
+    bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
+    if bad:
+        told.append(f"{bad} points are not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
+    if result.exit_code == 1:
+        warn(f"stopped: {result.stopped}")
+    return told

@@ -1,0 +1,35 @@
+"""Talk: where words and documents go. With --json stdout holds one JSON document and nothing else; talk goes to stderr."""
+
+import json
+import math
+import sys
+from typing import Any
+
+
+def strict(value: Any) -> Any:
+    """A document that any JSON reader takes: infinities and NaN as text, numpy numbers as numbers, paths as text."""
+    if isinstance(value, dict):
+        return {str(key): strict(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [strict(inner) for inner in value]
+    if hasattr(value, "tolist"):
+        return strict(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value if isinstance(value, str | int | float | bool) or value is None else str(value)
+
+
+def document(value: Any) -> None:
+    """The JSON document of a command."""
+    sys.stdout.write(json.dumps(strict(value), indent=1, ensure_ascii=False) + "\n")
+
+
+def say(text: str, as_json: bool = False, quiet: bool = False) -> None:
+    """A line for people."""
+    if not quiet:
+        (sys.stderr if as_json else sys.stdout).write(text + "\n")
+
+
+def warn(text: str) -> None:
+    """A line that is told always, on stderr."""
+    sys.stderr.write(text + "\n")

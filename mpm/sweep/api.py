@@ -1,0 +1,191 @@
+"""What the shell and Python share: `execute` (a sweep to its folder), `run_one` (a point to its dataset), `collect_folder`.
+
+`sweep` and `run` are the Python face: the same, returning an xarray.DataTree.
+"""
+
+import contextlib
+import io
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from mpm.records.provenance import cores, now, source_hash, versions
+from mpm.sweep.engine import Engine, Options, Points, Result, counts, exit_code
+from mpm.sweep.report import Reporter
+from mpm.sweep.store import Lock, Refused, Store
+
+
+def default_out(experiment: Any) -> Path:
+    """`results/<config name>`."""
+    return Path("results") / experiment.name
+
+
+def swept_paths(plan: Any) -> list[str]:
+    """Config paths of everything that varies."""
+    return [coordinate.config_path for dim in plan.dims for coordinate in dim.coords if coordinate.config_path]
+
+
+def skipped(plan: Any) -> int:
+    """Points that `where` dropped."""
+    total = 1
+    for dim in plan.dims:
+        total *= dim.size
+    return total - len(plan.cases)
+
+
+def execute(experiment: Any, out: Path | None = None, options: Options | None = None, reporter: Reporter | None = None, max_runs: int = 10_000) -> Result:
+    """Run what is missing of a sweep, then collect. Nothing is written before the whole plan is valid."""
+    from mpm.sweep.cases import plan as plan_of
+
+    options, reporter = options or Options(), reporter or Reporter()
+    began = time.monotonic()
+    plan = plan_of(experiment, max_runs=max_runs)
+    store, points = Store(out or default_out(experiment)), Points.of(plan)
+    store.out.mkdir(parents=True, exist_ok=True)
+    with Lock(store.out):
+        store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"))
+        lines, damaged = store.lines(list(points.cases))
+        for run_id in damaged:
+            reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
+
+        def gather() -> bool:
+            from mpm.sweep.collect import collect
+
+            return collect(store, plan, store.experiment(), lines)
+
+        engine = Engine(store, points, lines, options, reporter, partial(gather, reporter))
+        reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in engine.due), options.jobs)
+        try:
+            if engine.due:
+                run_engine(engine, options)
+        finally:
+            reporter.close()
+        quick = 2e-3 * len(lines) < 1.0
+        collected = gather() if engine.stopped != "terminated" or quick else False
+    found = counts(points, lines, skipped(plan))
+    stopped = engine.broken or engine.stopped
+    if engine.broken:
+        reporter.note(engine.broken)
+    return Result(store.out, lines, found, engine.ran, stopped, exit_code(found, engine.stopped), time.monotonic() - began, collected)
+
+
+def partial(gather: Callable[[], bool], reporter: Reporter) -> Callable[[], None]:
+    """Collect while running: trouble with the disk is told, and the sweep goes on."""
+
+    def attempt() -> None:
+        try:
+            gather()
+        except OSError as error:
+            reporter.note(f"cannot collect yet: {error.filename}: {error.strerror}")
+
+    return attempt
+
+
+def run_engine(engine: Engine, options: Options) -> None:
+    """Workers, and signals while they work. `jobs=0` runs the points in this process."""
+    from mpm.sweep.executors import Serial
+    from mpm.sweep.processes import Processes
+
+    with signals(engine.signal):
+        if options.jobs == 0:
+            engine.run(Serial(options.runner, engine.heed))
+            return
+        first = engine.points.cases[engine.due[0]].experiment.resolved() if len(engine.due) > 1 and options.jobs > 1 else None
+        engine.run(Processes(min(options.jobs, len(engine.due)), options.runner, first))
+
+
+@contextlib.contextmanager
+def signals(heard: Callable[[str], None]) -> Iterator[None]:
+    """Ctrl-C and SIGTERM go to `heard` while this lasts; elsewhere than in the main thread nothing changes."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    signal.signal(signal.SIGINT, lambda *_: heard("interrupted"))
+    signal.signal(signal.SIGTERM, lambda *_: heard("terminated"))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def folder_plan(out: Path) -> tuple[Store, Any, dict, dict[str, dict], list[str]]:
+    """A sweep's folder, read back: store, plan, experiment.json, lines, damaged ids."""
+    from mpm.config import load
+    from mpm.sweep.cases import plan as plan_of
+
+    store = Store(out)
+    about = store.experiment()
+    if about is None:
+        raise Refused(f"{out} holds no sweep (there is no experiment.json); give the folder that `mpm sweep` wrote")
+    plan = plan_of(load(about["resolved"]), max_runs=10**9)
+    lines, damaged = store.lines(list({case.run_id: None for case in plan.cases}))
+    return store, plan, about, lines, damaged
+
+
+def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
+    """Assemble sweep.nc from the points that are there: its path, whether it was written, counts by status."""
+    from mpm.sweep.collect import collect
+
+    store, plan, about, lines, _ = folder_plan(out)
+    written = collect(store, plan, about, lines)
+    return store.dataset, written, counts(Points.of(plan), lines, skipped(plan))
+
+
+def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000, runner: str = "mpm.runner") -> tuple[bytes, Any]:
+    """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions) and its record."""
+    import importlib
+
+    from mpm.records import point
+    from mpm.sweep.cases import plan as plan_of
+    from mpm.sweep.collect import dataset
+
+    case = plan_of(experiment, max_runs=max_runs).cases[0]
+    started = now()
+    run = importlib.import_module(runner).run_point(case.experiment, beat)
+    record = point.from_run(case.run_id, run, source=source_hash(), started=started, finished=now(), config=case.experiment.resolved())
+    alone = plan_of(case.experiment)
+    about = {
+        "title": experiment.title,
+        "name": experiment.name,
+        "source": experiment.source,
+        "smoke": False,
+        "swept": [],
+        "resolved": case.experiment.resolved(),
+        "versions": versions(),
+    }
+    return dataset(alone, about, {alone.cases[0].run_id: record}, {}, None), record
+
+
+def tree_of(source: Any) -> Any:
+    """A dataset file or its bytes as an xarray.DataTree in memory."""
+    import xarray
+
+    with xarray.open_datatree(io.BytesIO(source) if isinstance(source, bytes) else source, engine="h5netcdf") as tree:
+        return tree.load()
+
+
+def run(experiment: Any, beat: Callable[[float, float], bool] | None = None) -> Any:
+    """`mpm.run`: the first point as an xarray.DataTree (/, series, grid, particles). A point that fails is `status` 4 with its `error`, not an exception."""
+    return tree_of(run_one(experiment, beat)[0])
+
+
+def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "auto", max_runs: int = 10_000, reporter: Any = None, **more: Any) -> Any:
+    """`mpm.sweep`: run what is missing and return the dataset as an xarray.DataTree.
+
+    out    folder; `results/<config name>` unless given
+    jobs   worker processes; "auto" is one a core; 0 runs the points in this process
+    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke
+    Ctrl-C finishes what runs, collects, and raises KeyboardInterrupt; the same call again goes on.
+    """
+    options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)
+    result = execute(experiment, Path(out) if out is not None else None, options, reporter, max_runs)
+    if result.stopped in ("interrupted", "terminated"):
+        raise KeyboardInterrupt
+    if result.exit_code == 1:
+        raise OSError(result.stopped)
+    return tree_of(result.out / "sweep.nc")

@@ -1,0 +1,85 @@
+"""Compare: whether two datasets hold the same results. Times of day, wall times and attempts do not count."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm.sweep.store import Refused
+
+NOT_RESULTS = ("wall_time", "attempts")
+NOT_ATTRIBUTES = ("started", "finished", "facts", "machine", "versions", "git_revision", "source_hash", "_NCProperties")
+
+
+def dataset_of(place: Path) -> Path:
+    """A dataset's file, given it or its folder."""
+    if place.is_dir():
+        for name in ("sweep.nc", "run.nc"):
+            if (place / name).exists():
+                return place / name
+        raise Refused(f"{place} holds neither sweep.nc nor run.nc")
+    if not place.exists():
+        raise Refused(f"{place} does not exist")
+    return place
+
+
+def compare(one: Path, two: Path, rtol: float = 0.0, atol: float = 0.0) -> list[str]:
+    """Differences in words, none if the two are the same within |a - b| <= atol + rtol |b| (NaN equals NaN)."""
+    import xarray
+
+    told: list[str] = []
+    with xarray.open_datatree(dataset_of(one), engine="h5netcdf") as a, xarray.open_datatree(dataset_of(two), engine="h5netcdf") as b:
+        paths = {node.path: None for tree in (a, b) for node in tree.subtree}
+        for path in paths:
+            here, there = (tree[path] if path in {node.path for node in tree.subtree} else None for tree in (a, b))
+            if here is None or there is None:
+                told.append(f"{path}: only in the {'second' if here is None else 'first'}")
+                continue
+            told += group(path, here.to_dataset(inherit=False), there.to_dataset(inherit=False), rtol, atol)
+        keys = {key: None for tree in (a, b) for key in tree.attrs if key not in NOT_ATTRIBUTES}
+        told += [f"attribute {key}: {clip(a.attrs.get(key))} and {clip(b.attrs.get(key))}" for key in keys if not equal(a.attrs.get(key), b.attrs.get(key))]
+    return told
+
+
+def group(path: str, a: Any, b: Any, rtol: float, atol: float) -> list[str]:
+    """Differences within one group."""
+    told = []
+    for name in {str(name): None for data in (a, b) for name in data.variables if str(name) not in NOT_RESULTS}:
+        place = f"{path.rstrip('/')}/{name}"
+        if name not in a.variables or name not in b.variables:
+            told.append(f"{place}: only in the {'second' if name not in a.variables else 'first'}")
+            continue
+        x, y = a.variables[name], b.variables[name]
+        if x.dims != y.dims or x.shape != y.shape:
+            told.append(f"{place}: {dict(x.sizes)} and {dict(y.sizes)}")
+        elif text := values(x.values, y.values, rtol, atol):
+            told.append(f"{place}: {text}")
+    return told
+
+
+def values(x: np.ndarray, y: np.ndarray, rtol: float, atol: float) -> str:
+    """How two arrays of one shape differ; empty if they do not."""
+    if x.dtype.kind not in "fiub" or y.dtype.kind not in "fiub":
+        different = np.asarray(x != y)
+        if not different.any():
+            return ""
+        at = tuple(np.argwhere(different)[0])
+        return f"{different.sum()} of {x.size} differ, first {clip(x[at])} and {clip(y[at])}"
+    same = np.isclose(x.astype(float), y.astype(float), rtol=rtol, atol=atol, equal_nan=True)
+    if same.all():
+        return ""
+    gap = np.where(same, 0.0, np.abs(np.nan_to_num(x.astype(float)) - np.nan_to_num(y.astype(float))))
+    at = np.unravel_index(np.argmax(np.where(same, -1.0, gap)), x.shape)
+    return f"{(~same).sum()} of {x.size} differ, most at {tuple(int(i) for i in at)}: {x[at]:.17g} and {y[at]:.17g}"
+
+
+def equal(x: Any, y: Any) -> bool:
+    """Whether two attributes are the same."""
+    return json.dumps(x, default=str) == json.dumps(y, default=str)
+
+
+def clip(value: Any) -> str:
+    """A value, short."""
+    text = str(value).replace("\n", " ")
+    return text if len(text) < 60 else text[:57] + "..."

@@ -1,0 +1,95 @@
+"""Outlook: what a sweep would do (`mpm plan`): points, what is there already, physics, limits, cost. Runs nothing and writes nothing."""
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+from mpm.sweep.api import default_out, skipped
+from mpm.sweep.engine import Points, missing
+from mpm.sweep.store import Store
+
+
+def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000, runner: str = "mpm.runner") -> dict[str, Any]:
+    """Points and dimensions of the sweep, which are there, and `estimate` of the first that would run."""
+    from mpm.sweep.cases import plan as plan_of
+
+    plan = plan_of(experiment, max_runs=max_runs)
+    store, points = Store(out or default_out(experiment)), Points.of(plan)
+    lines, _ = store.lines(list(points.cases))
+    due = missing(points, lines, rerun)
+    first = points.cases[due[0]] if due else plan.cases[0] if plan.cases else None
+    cost = importlib.import_module(runner).estimate(first.experiment) if first else {}
+    return {
+        "name": experiment.name,
+        "title": experiment.title,
+        "out": str(store.out),
+        "points": points.total,
+        "skipped": skipped(plan),
+        "distinct": len(points.cases),
+        "present": len(points.cases) - len(due),
+        "due": len(due),
+        "dimensions": [dimension(dim) for dim in plan.dims],
+        "estimate": cost,
+        "jobs": jobs,
+        "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
+        "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
+        "memory_bytes": cost["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in cost else None,
+    }
+
+
+def dimension(dim: Any) -> dict[str, Any]:
+    """A swept dimension: name, size, and its coordinates' ends."""
+    rows = []
+    for row in dim.coords:
+        ends = {"first": plain(row.values[0]), "last": plain(row.values[-1])}
+        rows.append({"name": row.name, "config_path": row.config_path, "units": row.units, **ends})
+    return {"name": dim.name, "size": dim.size, "coordinates": rows}
+
+
+def plain(value: Any) -> Any:
+    """A numpy scalar as Python's."""
+    return value.item() if hasattr(value, "item") else value
+
+
+def said(found: dict[str, Any]) -> str:
+    """The same in words."""
+    told = [f"{found['name']}: {found['title']}" if found["title"] else found["name"]]
+    told.append(f"points    {found['points']}" + (f" ({found['skipped']} dropped by where)" if found["skipped"] else ""))
+    told[-1] += f", {found['present']} already in {found['out']}, {found['due']} to run"
+    for dim in found["dimensions"]:
+        for row in dim["coordinates"]:
+            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {short(row['first'])} ... {short(row['last'])} {row['units']}".rstrip())
+    cost = found["estimate"]
+    if physics := cost.get("physics"):
+        told.append(f"compiled  {', '.join(physics['compiled']) or 'nothing'}")
+        told.append(f"left out  {', '.join(physics['absent']) or 'nothing'}")
+    if limits := cost.get("limits"):
+        told.append("step      " + ", ".join(f"{name} {value:.4g} s" for name, value in limits.items()) + f"; {cost.get('binds') or 'none'} binds")
+    for name, value in cost.items():
+        if name not in ("physics", "limits", "binds", "seconds", "memory_bytes", "output_bytes"):
+            told.append(f"{name:<9} {said_value(value)}")
+    if "seconds" in cost:
+        told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
+        told.append(f"memory    {size(cost['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
+    return "\n".join(told)
+
+
+def short(value: Any) -> str:
+    """A value of an axis."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def said_value(value: Any) -> str:
+    """Any further fact of an estimate."""
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {short(inner)}" for name, inner in value.items())
+    return short(value)
+
+
+def size(count: float) -> str:
+    """Bytes for people."""
+    for unit in ("B", "kB", "MB", "GB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} TB"

@@ -1,0 +1,72 @@
+"""Status: what a sweep's folder holds, without opening a single result (each point's seal carries its summary)."""
+
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+from mpm.records.provenance import source_hash
+from mpm.records.variables import OK, STATUS
+from mpm.sweep.api import folder_plan, skipped
+from mpm.sweep.engine import Points, counts
+from mpm.sweep.report import label
+from mpm.sweep.store import owner, said_owner
+
+SLOWEST = 5
+
+
+def status(out: Path) -> dict[str, Any]:
+    """Counts by status, failures grouped by reason, slowest points, points from other source, who works here, seconds of work left."""
+    store, plan, about, lines, damaged = folder_plan(out)
+    points = Points.of(plan)
+    found = counts(points, lines, skipped(plan))
+    reasons: dict[str, list[str]] = defaultdict(list)
+    for run_id, line in lines.items():
+        if line["status"] != OK:
+            reasons[reason(line)].append(run_id)
+    done = [line["wall_time"] for line in lines.values() if line["status"] == OK]
+    slow = sorted((run_id for run_id in lines if lines[run_id]["status"] == OK), key=lambda run_id: -lines[run_id]["wall_time"])[:SLOWEST]
+    mean = sum(done) / len(done) if done else None
+    return {
+        "out": str(out),
+        "name": about["name"],
+        "points": sum(found.values()),
+        "counts": found,
+        "stale": sorted(run_id for run_id, line in lines.items() if line["source"] != source_hash()),
+        "damaged": damaged,
+        "failures": [
+            {"reason": why, "count": len(ids), "example": label(points.cases[ids[0]]), "error": lines[ids[0]]["error"], "run_id": ids[0]}
+            for why, ids in sorted(reasons.items(), key=lambda item: -len(item[1]))
+        ],
+        "slowest": [{"point": label(points.cases[run_id]), "seconds": lines[run_id]["wall_time"], "run_id": run_id} for run_id in slow],
+        "seconds_a_point": mean,
+        "seconds_of_work_left": mean * found["pending"] if mean is not None else None,
+        "owner": owner(store.out),
+        "dataset": str(store.dataset) if store.dataset.exists() else None,
+    }
+
+
+def reason(line: dict) -> str:
+    """What failures are grouped by: the status and the kind of outcome, or the text up to its first number."""
+    if line["outcome"]:
+        return f"{STATUS[line['status']]}: {line['outcome'].replace('_', ' ')}"
+    text = line["error"]
+    cut = next((i for i, letter in enumerate(text) if letter.isdigit()), len(text))
+    return text[:cut].rstrip(" (=,") or text
+
+
+def said(found: dict[str, Any]) -> str:
+    """The same in words."""
+    told = [f"{found['out']}: {found['name']}, {found['points']} points: " + ", ".join(f"{count} {name}" for name, count in found["counts"].items() if count)]
+    for failure in found["failures"]:
+        told.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or failure['run_id']}: {failure['error']}")
+    if found["stale"]:
+        told.append(f"  {len(found['stale'])} from other source (--rerun stale runs them again)")
+    if found["damaged"]:
+        told.append(f"  {len(found['damaged'])} damaged (the next sweep runs them again)")
+    if found["slowest"]:
+        told.append("  slowest: " + ", ".join(f"{row['point'] or row['run_id']} {row['seconds']:.3g} s" for row in found["slowest"]))
+    if found["owner"] is not None:
+        told.append(f"  being swept by {said_owner(found['owner'])}")
+    if found["counts"]["pending"] and found["seconds_of_work_left"] is not None:
+        told.append(f"  work left: {found['seconds_of_work_left']:.3g} s of one core")
+    return "\n".join(told)
