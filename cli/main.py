@@ -39,10 +39,11 @@ for command in COMMANDS:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command and return its exit code."""
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
         return int(typer.main.get_command(app).main(arguments, prog_name="mpm", standalone_mode=False) or 0)
     except UsageError as error:
-        usage = error.ctx.get_usage() + "\n" if error.ctx and len(sys.argv) > 1 else ""
+        usage = error.ctx.get_usage() + "\n" if error.ctx and arguments else ""
         warn(f"{usage}error: {error.format_message()}" if usage else error.format_message())
         return 2
     except (KeyboardInterrupt, typer.Abort):

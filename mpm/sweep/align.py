@@ -15,7 +15,7 @@ def axis(times: list[np.ndarray], ok: list[bool]) -> np.ndarray:
     if not distinct:
         return max(times, key=len, default=np.zeros(0))
     union = np.unique(np.concatenate(list(distinct.values())))
-    apart = np.diff(union, prefix=-np.inf) > TOLERANCE * abs(union[-1])
+    apart = np.diff(union, prepend=-np.inf) > TOLERANCE * abs(union[-1])
     return union[apart]
 
 

@@ -1,0 +1,100 @@
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from mpm.records.point import Record
+from mpm.sweep.store import Lock, Refused, Store, differences, flatten, owner
+
+
+def experiment(**changes):
+    key = {"materials": {"dough": {"density": 300.0, "heat": {"fourier": {"kappa": 0.35}}}}, "time": {"end": 10.0}} | changes
+    return SimpleNamespace(name="loaf", title="Loaf", source="text", key=lambda: key, resolved=lambda: key)
+
+
+KAPPA = "materials.dough.heat.fourier.kappa"
+
+
+def test_points_lie_in_shards_and_come_back(tmp_path):
+    store = Store(tmp_path)
+    store.save(Record("ab34", 0, steps=3))
+    store.save(Record("cd56", 4, "diverged: det F <= 0"))
+    assert store.path("ab34") == tmp_path / "points" / "ab" / "ab34.nc"
+    lines, damaged = store.lines(["ab34", "cd56", "ef78"])
+    assert list(lines) == ["ab34", "cd56"] and not damaged
+    assert lines["cd56"]["error"] == "diverged: det F <= 0" and store.load("ab34").steps == 3
+
+
+def test_a_truncated_point_is_told_and_set_aside(tmp_path):
+    store = Store(tmp_path)
+    store.save(Record("ab34", 0))
+    store.path("ab34").write_bytes(store.path("ab34").read_bytes()[:-40])
+    assert store.lines(["ab34"]) == ({}, ["ab34"])
+    assert store.set_aside("ab34").suffix == ".damaged"
+    assert store.lines(["ab34"]) == ({}, [])
+
+
+def test_other_values_on_the_axes_are_the_same_experiment(tmp_path):
+    store = Store(tmp_path)
+    store.claim(experiment(), [KAPPA], smoke=False, take_over=False)
+    other = experiment(materials={"dough": {"density": 300.0, "heat": {"fourier": {"kappa": 0.2}}}})
+    store.claim(other, [KAPPA, "time.end"], smoke=False, take_over=False)
+    assert store.experiment()["swept"] == [KAPPA, "time.end"]
+
+
+def test_another_experiment_is_refused_by_key_unless_taken_over(tmp_path):
+    store = Store(tmp_path)
+    store.claim(experiment(), [KAPPA], smoke=False, take_over=False)
+    before = (tmp_path / "experiment.json").read_bytes()
+    other = experiment(time={"end": 20.0, "safety": 0.5})
+    with pytest.raises(Refused, match=r"another experiment \(loaf\):\n  time.end: 10.0 -> 20.0\n  time.safety: absent -> 0.5\n"):
+        store.claim(other, [KAPPA], smoke=False, take_over=False)
+    assert (tmp_path / "experiment.json").read_bytes() == before
+    store.claim(other, [KAPPA], smoke=False, take_over=True)
+    assert store.experiment()["key"]["time"] == {"end": 20.0, "safety": 0.5}
+
+
+def test_a_smoke_folder_gives_way_to_the_full_run_but_not_the_reverse(tmp_path):
+    store = Store(tmp_path)
+    store.claim(experiment(time={"end": 1.0}), [], smoke=True, take_over=False)
+    store.claim(experiment(), [], smoke=False, take_over=False)
+    with pytest.raises(Refused, match=r"time\.end"):
+        store.claim(experiment(time={"end": 1.0}), [], smoke=True, take_over=False)
+
+
+def test_differences_are_paths():
+    assert flatten({"a": {"b": [1, {"c": 2}]}, "d": {}}) == {"a.b.0": 1, "a.b.1.c": 2, "d": {}}
+    assert differences({"a": 1, "b": {"c": 1}}, {"a": 2, "b": {"c": 2}}, {"b"}) == ["a: 1 -> 2"]
+
+
+def test_one_writer_a_folder_and_the_dead_hold_nothing(tmp_path):
+    code = f"""
+import signal
+from pathlib import Path
+from mpm.sweep.store import Lock
+with Lock(Path({str(tmp_path)!r})):
+    print("held", flush=True)
+    signal.pause()
+"""
+    other = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+    assert other.stdout.readline() == "held\n"
+    assert owner(tmp_path)["pid"] == other.pid
+    with pytest.raises(Refused, match=f"in use by process {other.pid} on "), Lock(tmp_path):
+        pass
+    other.kill()
+    other.wait()
+    other.stdout.close()
+    assert owner(tmp_path) is None
+    with Lock(tmp_path):
+        assert json.loads((tmp_path / "lock").read_text())["pid"] == os.getpid()
+    assert owner(tmp_path) is None and (tmp_path / "lock").read_text() == ""
+
+
+def test_a_damaged_description_is_refused_in_words(tmp_path):
+    (tmp_path / "experiment.json").write_text('{"format": 1, ')
+    with pytest.raises(Refused, match="damaged"):
+        Store(tmp_path).experiment()
