@@ -1,10 +1,14 @@
 """Config: a YAML file or a dict becomes an `Experiment`, or a `ConfigError` that lists everything that is wrong with it.
 
-Rooms    base, quantities, units        what models are made of: kinds and menus, SI floats, pint
-         laws, materials, bodies, boundary, numerics, output, sweep, experiment     the models, field names as users write them
+Made of  base, quantities, units        kinds and menus, SI floats, pint
+Models   laws, materials, bodies, boundary, numerics, output, sweep, experiment: field names as users write them
+Reading  nodes (YAML with places), merge (extends, overrides), names (kappa, κ -> a path), slots (what a path may hold), load
+Errors   problems, explain (pydantic's words into ours), loose (go on after an error), checks, shapes_fit, condition, vary
 To add   a kind: a class with `kind = "name"`, listed in its menu. Paths, errors, sweeps and the schema follow.
 """
 
 from mpm.config.experiment import PHYSICS_VERSION, Experiment
+from mpm.config.load import load
+from mpm.config.problems import ConfigError, Problem
 
-__all__ = ["PHYSICS_VERSION", "Experiment"]
+__all__ = ["PHYSICS_VERSION", "ConfigError", "Experiment", "Problem", "load"]

@@ -39,6 +39,7 @@ class Experiment(Model):
 
     _source: str = PrivateAttr("")
     _path: Path | None = PrivateAttr(None)
+    _tree: Any = PrivateAttr(None)  # nodes with places, for errors of points that are planned later
 
     @model_validator(mode="after")
     def derived(self) -> "Experiment":

@@ -1,0 +1,81 @@
+"""`where`: a condition on swept parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
+
+Comparisons, and or not, + - * / **, numbers, text, names (short names or dotted paths).
+"""
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any
+
+MOST_LETTERS = 1000
+COMPARE = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
+BINARY = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+UNARY = {ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_}
+ALLOWED = "comparisons (< <= > >= == !=), and, or, not, + - * / **, numbers, text and names of parameters"
+
+
+class ConditionError(ValueError):
+    """A condition that cannot be read, or that fails on a point."""
+
+
+class Condition:
+    """A condition and the names it uses; call it with a mapping of their values."""
+
+    def __init__(self, text: str):
+        if len(text) > MOST_LETTERS:
+            raise ConditionError(f"the condition is longer than {MOST_LETTERS} letters")
+        try:
+            tree = ast.parse(text.strip(), mode="eval")
+        except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+            raise ConditionError(f"this is no condition: {getattr(error, 'msg', None) or error}") from None
+        self.names: dict[str, None] = {}
+        try:
+            self.run = self.build(tree.body)
+        except RecursionError:
+            raise ConditionError("the condition is nested too deeply") from None
+        if not isinstance(tree.body, ast.Compare | ast.BoolOp | ast.UnaryOp) or (isinstance(tree.body, ast.UnaryOp) and not isinstance(tree.body.op, ast.Not)):
+            raise ConditionError("a condition compares something, as in kappa > 0.3")
+
+    def __call__(self, values: Mapping[str, Any]) -> bool:
+        try:
+            return bool(self.run(values))
+        except (TypeError, ZeroDivisionError, OverflowError) as error:
+            raise ConditionError(f"the condition fails on this point: {error}") from None
+
+    def build(self, node: ast.AST) -> Callable[[Mapping[str, Any]], Any]:
+        """A function of the values for one node of the tree."""
+        if isinstance(node, ast.Constant) and isinstance(node.value, int | float | str) and not isinstance(node.value, bool):
+            try:
+                value = node.value if isinstance(node.value, str) else float(node.value)  # floats: powers overflow at once
+            except OverflowError:
+                raise ConditionError("a number is too large") from None
+            return lambda values: value
+        if isinstance(node, ast.Name | ast.Attribute):
+            name = dotted(node)
+            self.names[name] = None
+            return lambda values: values[name]
+        if isinstance(node, ast.BoolOp):
+            parts, stop = [self.build(item) for item in node.values], isinstance(node.op, ast.Or)
+            return lambda values: any(part(values) for part in parts) if stop else all(part(values) for part in parts)
+        if isinstance(node, ast.UnaryOp) and type(node.op) in UNARY:
+            do, inner = UNARY[type(node.op)], self.build(node.operand)
+            return lambda values: do(inner(values))
+        if isinstance(node, ast.BinOp) and type(node.op) in BINARY:
+            do, left, right = BINARY[type(node.op)], self.build(node.left), self.build(node.right)
+            return lambda values: do(left(values), right(values))
+        if isinstance(node, ast.Compare) and all(type(op) in COMPARE for op in node.ops):
+            terms, does = [self.build(item) for item in (node.left, *node.comparators)], [COMPARE[type(op)] for op in node.ops]
+            return lambda values: all(do(left(values), right(values)) for do, left, right in zip(does, terms, terms[1:], strict=False))
+        raise ConditionError(f"a condition may not hold {ast.unparse(node)[:60]!r}")
+
+
+def dotted(node: ast.AST) -> str:
+    """`materials.dough.heat.fourier.kappa` from nested attributes."""
+    parts = []
+    while isinstance(node, ast.Attribute):
+        parts.append(node.attr)
+        node = node.value
+    if not isinstance(node, ast.Name):
+        raise ConditionError(f"a condition may not hold {ast.unparse(node)[:60]!r}")
+    return ".".join([node.id, *reversed(parts)])

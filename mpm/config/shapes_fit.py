@@ -1,0 +1,60 @@
+"""Whether a shape suits the dimension and lies in the domain."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from mpm.config.bodies import Ball, Box, Cylinder, Polygon, Ring
+
+WHERE = {Box: (1, 2, "axisymmetric", 3), Ball: (1, 2, "axisymmetric", 3), Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric")}
+POINTS = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",)}
+ROUND_OFF = 1e-9
+
+
+def misfits(shape: Any, dimension: Any, directions: int) -> Iterator[tuple[tuple, str, Any]]:
+    """(keys below the shape, what is wrong, what is allowed)."""
+    if dimension not in WHERE[type(shape)]:
+        yield (), f"there is no {shape.kind} in dimension {dimension}", [kind.kind for kind, where in WHERE.items() if dimension in where]
+        return
+    for key in POINTS[type(shape)]:
+        points = [((key, index), point) for index, point in enumerate(shape.vertices)] if key == "vertices" else [((key,), getattr(shape, key))]
+        for at, point in points:
+            if len(point) != directions:
+                yield at, f"a point needs {directions} number{'s' * (directions != 1)} in dimension {dimension}, found {len(point)}", "one number a direction"
+                return
+    if isinstance(shape, Box) and shape.angle and dimension != 2:
+        yield ("angle",), f"a box cannot be turned in dimension {dimension}", "dimension 2"
+    on_axis = {Ball: "centre", Cylinder: "base"}.get(type(shape))
+    if dimension == "axisymmetric" and on_axis and getattr(shape, on_axis)[0] != 0:
+        yield (on_axis, 0), f"the {on_axis} of a {shape.kind} lies on the axis r = 0", "0"
+
+
+def bounds(shape: Any, dimension: Any) -> tuple[list[float], list[float]]:
+    """Smallest and largest coordinates; r from 0 in axisymmetric scenes."""
+    if isinstance(shape, Box):
+        if not shape.angle:
+            return list(shape.lower), list(shape.upper)
+        centre = [(low + high) / 2 for low, high in zip(shape.lower, shape.upper, strict=True)]
+        a, b = ((high - low) / 2 for low, high in zip(shape.lower, shape.upper, strict=True))
+        c, s = abs(math.cos(shape.angle)), abs(math.sin(shape.angle))
+        reach = [a * c + b * s, a * s + b * c]
+    elif isinstance(shape, Polygon):
+        return [min(axis) for axis in zip(*shape.vertices, strict=True)], [max(axis) for axis in zip(*shape.vertices, strict=True)]
+    elif isinstance(shape, Cylinder):
+        base = list(shape.base)
+        around = [0.0 if dimension == "axisymmetric" else x - shape.radius for x in base[:-1]]
+        return [*around, base[-1]], [*(x + shape.radius for x in base[:-1]), base[-1] + shape.height]
+    else:
+        centre = list(shape.centre)
+        reach = [shape.outer if isinstance(shape, Ring) else shape.radius] * len(centre)
+    low, high = [x - r for x, r in zip(centre, reach, strict=True)], [x + r for x, r in zip(centre, reach, strict=True)]
+    return ([0.0, *low[1:]], high) if dimension == "axisymmetric" else (low, high)
+
+
+def outside(shape: Any, dimension: Any, size: tuple[float, ...]) -> str:
+    """In words, where a shape leaves the domain; empty if it does not."""
+    low, high = bounds(shape, dimension)
+    for index, (a, b, length) in enumerate(zip(low, high, size, strict=True)):
+        if a < -ROUND_OFF * length or b > length * (1 + ROUND_OFF):
+            return f"the shape leaves the domain: it spans {a:.6g} to {b:.6g} m in direction {index}, the domain 0 to {length:g} m"
+    return ""

@@ -1,0 +1,268 @@
+"""From `sweep:` to groups of parameters with checked values. Nothing here grows with the number of points: ranges stay ranges.
+
+A group is a dimension: an axis (one parameter), a zip (several that move together), the sample, the list of points.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from mpm.config.base import Kind
+from mpm.config.condition import ALLOWED, Condition, ConditionError
+from mpm.config.experiment import plain
+from mpm.config.explain import Finding, findings, shown
+from mpm.config.laws import Law
+from mpm.config.names import Names, UnknownName
+from mpm.config.problems import listed
+from mpm.config.slots import Path, Slot
+
+RESERVED = {"point", "sample", "obs", "dim", "x", "y", "z", "r"}
+
+
+@dataclass
+class Parameter:
+    """One varied parameter: `values` as SI numbers or plain data, or a range `low`..`high`, even in the number or its logarithm."""
+
+    name: str
+    path: Path
+    slot: Slot
+    where: Path  # in the config's data, for errors
+    values: list[Any] = field(default_factory=list)
+    low: float = math.nan
+    high: float = math.nan
+    log: bool = False
+    short: str = ""
+    spoken: str = ""
+
+
+@dataclass
+class Group:
+    """A dimension of the sweep."""
+
+    form: str  # axis, zip, sample, points
+    parameters: list[Parameter]
+    size: int
+    where: Path
+    design: str = ""
+    seed: int = 0
+
+
+@dataclass
+class Variation:
+    """All groups in the order of the file's forms, and the condition."""
+
+    groups: list[Group]
+    condition: Condition | None = None
+    names: dict[str, Path] = field(default_factory=dict)  # of the condition
+
+    @property
+    def size(self) -> int:
+        """Number of points, as an exact integer."""
+        return math.prod(group.size for group in self.groups)
+
+    def parameters(self) -> Iterator[Parameter]:
+        """Every varied parameter."""
+        for group in self.groups:
+            yield from group.parameters
+
+
+class Vary:
+    """Reads one sweep section against the names of its experiment; what is wrong collects in `found`."""
+
+    def __init__(self, sweep: Any, names: Names):
+        self.sweep, self.names = sweep, names
+        self.found: list[Finding] = []
+
+    def read(self) -> Variation:
+        """The groups and the condition."""
+        sweep, groups = self.sweep, []
+        for name, axis in sweep.axes.items():
+            groups += self.axis(name, axis)
+        for index, together in enumerate(sweep.zip):
+            groups += self.zip(index, together)
+        if sweep.sample is not None:
+            groups += self.sample(sweep.sample)
+        if sweep.points:
+            groups += self.points(sweep.points)
+        variation = Variation(groups)
+        self.conflicts(variation)
+        self.shorten(variation)
+        if sweep.where is not None:
+            self.where(variation, sweep.where)
+        if not groups and not self.found:
+            self.found.append(Finding(("sweep",), "nothing varies", ["axes", "zip", "sample", "points"], on_key=True))
+        return variation
+
+    def parameter(self, name: str, where: Path) -> Parameter | None:
+        """A parameter by its name."""
+        try:
+            path, slot = self.names.resolve(name)
+        except UnknownName as error:
+            self.found.append(Finding(where, error.message, error.allowed, error.suggestion, on_key=True))
+            return None
+        return Parameter(name, path, slot, where, spoken=self.names.spoken.get(path) or shown(path))
+
+    def value(self, parameter: Parameter, value: Any, where: Path) -> Any:
+        """A value checked by the parameter's own type, as plain SI data."""
+        slot = parameter.slot
+        before = len(self.found)
+        try:
+            checked = adapter(slot).validate_python(value)
+        except ValidationError as error:
+            self.found += findings(error, slot, where)
+        return plain(checked) if len(self.found) == before else None
+
+    def end(self, parameter: Parameter, value: Any, where: Path, log: bool) -> float:
+        """One end of a range, as an SI number."""
+        if parameter.slot.quantity is None or (parameter.slot.note(Law) and isinstance(value, dict)):
+            self.found.append(Finding(where, f"{parameter.name} is no number with a range", "a list of values"))
+            return math.nan
+        number = self.value(parameter, value, where)
+        if number is None:
+            return math.nan
+        if not isinstance(number, float) or (log and number <= 0):
+            self.found.append(Finding(where, "the end of a range must be a finite number" + (", above 0 on a logarithmic one" if log else ""), "", given=value))
+            return math.nan
+        return number
+
+    def span(self, parameter: Parameter, ends: tuple, where: Path, log: bool) -> None:
+        """Both ends of a range."""
+        parameter.log = log
+        parameter.low, parameter.high = (self.end(parameter, ends[index], (*where, index), log) for index in range(2))
+
+    def axis(self, name: str, axis: Any) -> list[Group]:
+        where: Path = ("sweep", "axes", name)
+        parameter = self.parameter(name, where)
+        if parameter is None:
+            return []
+        if isinstance(axis, dict):
+            ((word, (*ends, count)),) = axis.items()
+            self.span(parameter, tuple(ends), (*where, word), word == "log")
+            if parameter.low == parameter.high and count > 1:
+                self.found.append(Finding((*where, word), "the range is a single value", "two different ends"))
+            return [Group("axis", [parameter], count, where)]
+        self.fill(parameter, axis, where)
+        return [Group("axis", [parameter], len(axis), where)]
+
+    def fill(self, parameter: Parameter, values: tuple, where: Path, distinct: bool = True) -> None:
+        """A list of values; on an axis of its own each value once."""
+        parameter.values = [self.value(parameter, value, (*where, index)) for index, value in enumerate(values)]
+        seen: list[Any] = []
+        for index, value in enumerate(parameter.values):
+            if distinct and value is not None and value in seen:
+                self.found.append(Finding((*where, index), "this value is in the list twice", "each value once", given=values[index]))
+            seen.append(value)
+
+    def zip(self, index: int, together: dict[str, tuple]) -> list[Group]:
+        where: Path = ("sweep", "zip", index)
+        parameters, sizes = [], {name: len(values) for name, values in together.items()}
+        if not together:
+            self.found.append(Finding(where, "the zip is empty", "parameter: list of values"))
+        if len(set(sizes.values())) > 1:
+            said = ", ".join(f"{name} {size}" for name, size in sizes.items())
+            self.found.append(Finding(where, f"zipped lists must have the same length, found {said}", "lists of one length"))
+        for name, values in together.items():
+            if parameter := self.parameter(name, (*where, name)):
+                self.fill(parameter, values, (*where, name), distinct=False)
+                parameters.append(parameter)
+        return [Group("zip", parameters, min(sizes.values()), where)] if parameters else []
+
+    def sample(self, sample: Any) -> list[Group]:
+        where: Path = ("sweep", "sample", sample.kind)
+        parameters = []
+        for name, span in sample.ranges.items():
+            at = (*where, "ranges", name)
+            if parameter := self.parameter(name, at):
+                log = isinstance(span, dict)
+                self.span(parameter, span["log"] if log else span, (*at, "log") if log else at, log)
+                if parameter.low >= parameter.high:
+                    self.found.append(Finding(at, "the range must rise", "[smallest, largest]"))
+                parameters.append(parameter)
+        return [Group("sample", parameters, sample.count, where, sample.kind, sample.seed)] if parameters else []
+
+    def points(self, points: tuple[dict[str, Any], ...]) -> list[Group]:
+        """Points that leave a parameter out have it as the config says."""
+        parameters: dict[Path, Parameter] = {}
+        base = self.names.experiment
+        for index, point in enumerate(points):
+            if not point:
+                self.found.append(Finding(("sweep", "points", index), "the point is empty", "parameter: value"))
+            for name, value in point.items():
+                where: Path = ("sweep", "points", index, name)
+                if parameter := self.parameter(name, where):
+                    known = parameters.setdefault(parameter.path, parameter)
+                    known.values += [None] * (index - len(known.values))
+                    known.values.append(self.value(parameter, value, where))
+        for parameter in parameters.values():
+            parameter.where = ("sweep", "points")
+            parameter.values += [None] * (len(points) - len(parameter.values))
+            if None in parameter.values and not self.found:
+                default = at_path(plain(base), parameter.path)
+                parameter.values = [default if value is None else value for value in parameter.values]
+        return [Group("points", list(parameters.values()), len(points), ("sweep", "points"))] if parameters else []
+
+    def conflicts(self, variation: Variation) -> None:
+        """No parameter twice, none inside another."""
+        seen: list[Parameter] = []
+        for parameter in variation.parameters():
+            for other in seen:
+                length = min(len(parameter.path), len(other.path))
+                if parameter.path[:length] == other.path[:length]:
+                    said = f"{parameter.spoken} varies already" + (f", as part of {other.spoken}" if parameter.path != other.path else "")
+                    self.found.append(Finding(parameter.where, said, "each parameter once", on_key=True))
+            seen.append(parameter)
+
+    def shorten(self, variation: Variation) -> None:
+        """Names for the dataset: the last word of the path, and more of it where that is taken."""
+        from mpm.records.variables import VARIABLES
+
+        parameters = list(variation.parameters())
+        for parameter in parameters:
+            words = parameter.spoken.replace("-", "_").split(".")
+            for length in range(1, len(words) + 1):
+                short = "_".join(words[-length:])
+                others = ["_".join(other.spoken.split(".")[-length:]) for other in parameters if other is not parameter]
+                if short.isidentifier() and short not in RESERVED and short not in VARIABLES and short not in others:
+                    break
+            parameter.short = short
+
+    def where(self, variation: Variation, text: str) -> None:
+        where: Path = ("sweep", "where")
+        try:
+            condition = Condition(text)
+        except ConditionError as error:
+            self.found.append(Finding(where, str(error), ALLOWED, given=text))
+            return
+        variation.condition = condition
+        for name in condition.names:
+            try:
+                variation.names[name] = self.names.resolve(name)[0]
+            except UnknownName as error:
+                self.found.append(Finding(where, error.message, listed(error.allowed), error.suggestion, given=text))
+
+
+def adapter(slot: Slot) -> TypeAdapter:
+    """The validator of one slot."""
+    return TypeAdapter(Annotated[slot.type, *slot.notes] if slot.notes else slot.type)
+
+
+def at_path(data: Any, path: Path) -> Any:
+    """The plain data at a path; a bare kind's name counts as its mapping."""
+    for key in path:
+        data = data[key]
+    return data
+
+
+def label(value: Any) -> str:
+    """A short text for a value that is no number: a kind as `flip(blend=0.1)`."""
+    if isinstance(value, Kind):
+        value = plain(value)
+    if isinstance(value, dict):
+        return ", ".join(f"{key}({', '.join(f'{name}={label(item)}' for name, item in inner.items())})" if isinstance(inner, dict) and inner else str(key) if isinstance(inner, dict)
+                         else f"{key}={label(inner)}" for key, inner in value.items())  # fmt: skip
+    if isinstance(value, list):
+        return "[" + ", ".join(map(label, value)) + "]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
