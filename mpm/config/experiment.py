@@ -1,5 +1,7 @@
 """Experiment: one config, validated."""
 
+import hashlib
+import json
 import math
 from pathlib import Path
 from typing import Any
@@ -39,11 +41,15 @@ class Experiment(Model):
 
     _source: str = PrivateAttr("")
     _path: Path | None = PrivateAttr(None)
+    _derived: frozenset[str] = PrivateAttr(frozenset())
     _tree: Any = PrivateAttr(None)  # nodes with places, for errors of points that are planned later
 
     @model_validator(mode="after")
     def derived(self) -> "Experiment":
         """Defaults that follow from other sections: the cadence of the series, the zeros of the offset."""
+        object.__setattr__(
+            self, "_derived", frozenset(key for key, absent in (("every", self.output.every is None), ("offset", not self.method.offset)) if absent)
+        )
         if self.output.every is None:
             self.__dict__["output"] = self.output.model_copy(update={"every": self.time.end / 100})
         if not self.method.offset:
@@ -78,8 +84,25 @@ class Experiment(Model):
         """What determines a point's result, without defaults: equal for 1, 1.0 and "1000 mm", blind to title, sweep and smoke."""
         key = {name: value for name, value in plain(self, defaults=False).items() if name not in NOT_KEYED}
         if not any(self.method.offset):
-            key["method"] = {name: value for name, value in key["method"].items() if name != "offset"}
+            key["method"].pop("offset")
+        for section, name in ((key, "materials"), (key, "walls"), (key["output"], "probes")):
+            if name in section:
+                section[name] = dict(sorted(section[name].items()))
         return key
+
+    @property
+    def run_id(self) -> str:
+        """Sixteen letters of a hash of the key and the version of the physics."""
+        text = json.dumps([PHYSICS_VERSION, self.key()], separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def template(self) -> dict[str, Any]:
+        """The resolved config as one point of a sweep: nothing varies, and derived defaults are left to be derived again."""
+        data = plain(self)
+        for section, name in (("output", "every"), ("method", "offset")):
+            if name in self._derived:
+                data[section].pop(name)
+        return {**data, "sweep": None, "smoke": None}
 
 
 def plain(value: Any, defaults: bool = True) -> Any:

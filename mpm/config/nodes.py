@@ -1,7 +1,8 @@
 """Node: a config's data with the place of every value and key, before it is validated.
 
 `read` makes nodes from YAML 1.2 text, `wrap` from Python data. What a config may not hold is reported here: tags, anchors,
-aliases, duplicate keys, NaN, integers too long to parse, more than 20 levels, more than 1 MiB, several documents. Bad values become `BAD`, so that the rest is still checked.
+aliases, duplicate keys, NaN, integers too long to parse, more than 20 levels, more than 1 MiB, several documents. Bad values become
+`BAD`, so that the rest is still checked.
 """
 
 import math

@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from mpm.config.base import Kind
 from mpm.config.condition import ALLOWED, Condition, ConditionError
 from mpm.config.experiment import plain
 from mpm.config.explain import Finding, findings, shown
@@ -257,12 +256,14 @@ def at_path(data: Any, path: Path) -> Any:
 
 
 def label(value: Any) -> str:
-    """A short text for a value that is no number: a kind as `flip(blend=0.1)`."""
-    if isinstance(value, Kind):
-        value = plain(value)
+    """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`."""
     if isinstance(value, dict):
-        return ", ".join(f"{key}({', '.join(f'{name}={label(item)}' for name, item in inner.items())})" if isinstance(inner, dict) and inner else str(key) if isinstance(inner, dict)
-                         else f"{key}={label(inner)}" for key, inner in value.items())  # fmt: skip
-    if isinstance(value, list):
+        return ", ".join(f"{key}({entries(inner)})" if inner else str(key) for key, inner in value.items())
+    if isinstance(value, list | tuple):
         return "[" + ", ".join(map(label, value)) + "]"
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def entries(inner: Any) -> str:
+    """What stands in the brackets of a label."""
+    return ", ".join(f"{name}={label(item)}" for name, item in inner.items()) if isinstance(inner, dict) else label(inner)
