@@ -28,7 +28,7 @@ def invariants(e1, e2, e3, K, mu, thermal):
 
 @kernel(inline=True)
 def slowness(K, eta, dt):
-    """eta/(K dt), the inverse of chi: 0 without viscosity, inf where no time passes."""
+    """eta/(K dt), the inverse of chi: 0 without viscosity (even in no time), inf where no time passes."""
     if eta == 0.0:
         return 0.0
     return float(eta / (K * dt)) if dt > 0.0 else math.inf

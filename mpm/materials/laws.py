@@ -188,7 +188,7 @@ def temperature_constant(law, h, guess):
 
 @temperature_of.register(Bump)
 def temperature_bump(law, h, guess):
-    return settle_from(law, h, guess, law.base + min(law.heat, 0.0) / (law.width * SQRT2PI))
+    return settle_from(law, h, guess, law.base + 0.5 * (law.heat - abs(law.heat)) / (law.width * SQRT2PI))
 
 
 @temperature_of.register(Logistic)
