@@ -1,0 +1,15 @@
+"""Problems with exact solutions: a file each. `exact(experiment) -> theta(x (N, D), t)` of the scene that a config sets up.
+
+To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
+"""
+
+from mpm.verification import robin_cylinder, robin_slab
+
+EXACT = {"robin_slab": robin_slab.exact, "robin_cylinder": robin_cylinder.exact}
+
+
+def exact_solution(experiment):
+    """The solution that the config names, or None. ValueError where the scene is not the problem."""
+    if experiment.exact is None:
+        return None
+    return EXACT[type(experiment.exact).kind](experiment)

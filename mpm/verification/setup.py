@@ -1,0 +1,47 @@
+"""What the exact solutions need to know of a scene, and refusals where the scene is not their problem."""
+
+import math
+
+import numpy as np
+
+
+def only_body(experiment):
+    """The body that the exact solution is about."""
+    name = experiment.exact.body or next(iter(experiment.bodies))
+    return name, experiment.bodies[name]
+
+
+def constants(experiment, body) -> tuple[float, float]:
+    """kappa and diffusivity; both must be constant."""
+    material = experiment.materials[body.material]
+    kappa, alpha = material.heat.kappa, material.heat.alpha
+    for name, law in (("kappa", kappa), ("alpha", alpha)):
+        if type(law).kind != "constant":
+            raise ValueError(f"the exact solution needs a constant {name}, not a {type(law).kind}")
+    return float(kappa.value), float(kappa.value) / (material.density * float(alpha.value))
+
+
+def one_exchange(experiment, name: str) -> tuple[float, float]:
+    """beta and the temperature outside; one convection must act on the whole surface."""
+    entries = [surface for surface in experiment.surfaces if surface.of == name]
+    if len(entries) != 1 or entries[0].side not in ("all", "lateral"):
+        raise ValueError(f"the exact solution needs one surface entry of {name} with side all or lateral")
+    return entries[0].convection.beta, entries[0].convection.outside
+
+
+def moved(experiment, point) -> np.ndarray:
+    """A point of the config in the grid's coordinates: bodies are shifted by method.offset."""
+    return np.array(point, dtype=float) + np.array(experiment.method.offset) * experiment.grid.cell
+
+
+def series(roots: np.ndarray, coefficients: np.ndarray, shape, hot: float, out: float, length: float, diffusivity: float):
+    """theta(s, t) = out + (hot - out) sum C_n exp(-z_n^2 D t/L^2) shape(z_n s/L)."""
+
+    def theta(s: np.ndarray, t: float) -> np.ndarray:
+        if t <= 0:
+            return np.full(len(s), hot)
+        fourier = diffusivity * t / length**2
+        seen = roots**2 * fourier < 40 * math.log(10)
+        return out + (hot - out) * (shape(np.multiply.outer(s / length, roots[seen])) @ (coefficients[seen] * np.exp(-(roots[seen] ** 2) * fourier)))
+
+    return theta
