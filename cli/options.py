@@ -45,25 +45,14 @@ def limit(help_: str) -> Any:
 
 
 def overrides(pairs: list[str] | None) -> dict[str, Any]:
-    """`path=value` pairs as a mapping; a value is read as YAML would read it."""
+    """`path=value` pairs as a mapping; `mpm.config.load` reads the text."""
     found: dict[str, Any] = {}
     for pair in pairs or []:
         path, sign, text = pair.partition("=")
         if not sign or not path.strip():
             raise typer.BadParameter(f"--set {pair!r}: say PATH=VALUE, as --set time.end=60 or --set 'beta=13 W/m**2/K'")
-        found[path.strip()] = value(text.strip())
+        found[path.strip()] = text.strip()
     return found
-
-
-def value(text: str) -> Any:
-    """A number, truth, null, a list or mapping where the text is one in YAML 1.2; else the text."""
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    try:
-        return YAML(typ="safe", pure=True).load(text)
-    except YAMLError:
-        return text
 
 
 def load(config: Path, pairs: list[str] | None, smoke: bool = False) -> Any:

@@ -63,6 +63,7 @@ TABLE = [
     # one number a point
     ("status", "", "1", POINT, "outcome of the point"),
     ("error", "", "1", POINT, "why the point is not ok"),
+    ("outcome", "", "1", POINT, "how the run ended"),
     ("run_id", "", "1", POINT, "hash of the point's config"),
     ("steps", "", "1", POINT, "time steps taken"),
     ("wall_time", "", "s", POINT, "wall time of the run"),

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.provenance import cores, now, source_hash, versions
+from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Points, Result, counts, exit_code
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Lock, Refused, Store
@@ -56,20 +57,20 @@ def execute(experiment: Any, out: Path | None = None, options: Options | None = 
 
             return collect(store, plan, store.experiment(), lines)
 
-        engine = Engine(store, points, lines, options, reporter, partial(gather, reporter))
-        reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in engine.due), options.jobs)
+        supervisor = Engine(store, points, lines, options, reporter, partial(gather, reporter))
+        reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in supervisor.due), options.jobs)
         try:
-            if engine.due:
-                run_engine(engine, options)
+            if supervisor.due:
+                run_engine(supervisor, options)
         finally:
             reporter.close()
         quick = 2e-3 * len(lines) < 1.0
-        collected = gather() if engine.stopped != "terminated" or quick else False
+        collected = gather() if supervisor.stopped != "terminated" or quick else False
     found = counts(points, lines, skipped(plan))
-    stopped = engine.broken or engine.stopped
-    if engine.broken:
-        reporter.note(engine.broken)
-    return Result(store.out, lines, found, engine.ran, stopped, exit_code(found, engine.stopped), time.monotonic() - began, collected)
+    stopped = supervisor.broken or supervisor.stopped
+    if supervisor.broken:
+        reporter.note(supervisor.broken)
+    return Result(store.out, lines, found, supervisor.ran, stopped, exit_code(found, supervisor.stopped), time.monotonic() - began, collected)
 
 
 def partial(gather: Callable[[], bool], reporter: Reporter) -> Callable[[], None]:
@@ -84,17 +85,17 @@ def partial(gather: Callable[[], bool], reporter: Reporter) -> Callable[[], None
     return attempt
 
 
-def run_engine(engine: Engine, options: Options) -> None:
+def run_engine(supervisor: Engine, options: Options) -> None:
     """Workers, and signals while they work. `jobs=0` runs the points in this process."""
     from mpm.sweep.executors import Serial
     from mpm.sweep.processes import Processes
 
-    with signals(engine.signal):
+    with signals(supervisor.signal):
         if options.jobs == 0:
-            engine.run(Serial(options.runner, engine.heed))
+            supervisor.run(Serial(options.runner, supervisor.heed))
             return
-        first = engine.points.cases[engine.due[0]].experiment.resolved() if len(engine.due) > 1 and options.jobs > 1 else None
-        engine.run(Processes(min(options.jobs, len(engine.due)), options.runner, first))
+        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if len(supervisor.due) > 1 and options.jobs > 1 else None
+        supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first))
 
 
 @contextlib.contextmanager
@@ -136,7 +137,7 @@ def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
     return store.dataset, written, counts(Points.of(plan), lines, skipped(plan))
 
 
-def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000, runner: str = "mpm.runner") -> tuple[bytes, Any]:
+def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000) -> tuple[bytes, Any]:
     """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions) and its record."""
     import importlib
 
@@ -146,7 +147,7 @@ def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None,
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
     started = now()
-    run = importlib.import_module(runner).run_point(case.experiment, beat)
+    run = importlib.import_module(engine.RUNNER).run_point(case.experiment, beat)
     record = point.from_run(case.run_id, run, source=source_hash(), started=started, finished=now(), config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     about = {

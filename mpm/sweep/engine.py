@@ -24,6 +24,7 @@ from mpm.sweep.store import Store
 POLL = 0.2  # s
 GRACE = 2.0  # s that a point over its time has to stop by itself
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
+RUNNER = "mpm.runner"  # the module that computes: run_point, warm, estimate
 EXIT = {"interrupted": 130, "terminated": 143, "budget": 75}
 
 
@@ -42,7 +43,7 @@ class Options:
     max_failures: int | None = None
     rerun: str | None = None
     smoke: bool = False
-    runner: str = "mpm.runner"
+    runner: str = field(default_factory=lambda: RUNNER)
 
 
 @dataclass

@@ -4,12 +4,13 @@ import importlib
 from pathlib import Path
 from typing import Any
 
+from mpm.sweep import engine
 from mpm.sweep.api import default_out, skipped
 from mpm.sweep.engine import Points, missing
 from mpm.sweep.store import Store
 
 
-def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000, runner: str = "mpm.runner") -> dict[str, Any]:
+def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000) -> dict[str, Any]:
     """Points and dimensions of the sweep, which are there, and `estimate` of the first that would run."""
     from mpm.sweep.cases import plan as plan_of
 
@@ -18,7 +19,7 @@ def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = No
     lines, _ = store.lines(list(points.cases))
     due = missing(points, lines, rerun)
     first = points.cases[due[0]] if due else plan.cases[0] if plan.cases else None
-    cost = importlib.import_module(runner).estimate(first.experiment) if first else {}
+    cost = importlib.import_module(engine.RUNNER).estimate(first.experiment) if first else {}
     return {
         "name": experiment.name,
         "title": experiment.title,

@@ -1,0 +1,77 @@
+"""A runner that computes nothing and fails on demand: the conductivity of material `m` says how. Needs neither numba nor the model."""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from mpm.outcome import INVERTED, Outcome, outcome
+from mpm.state import Run
+
+RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0
+
+
+def mark(text):
+    """Leave a line where the test looks, if it does."""
+    if folder := os.environ.get("FAKE_MARKS"):
+        with open(Path(folder) / "marks", "a") as file:
+            file.write(f"{text} {os.getpid()}\n")
+
+
+def warm(experiment):
+    mark("warm")
+
+
+def estimate(experiment):
+    return {
+        "particles": 100,
+        "unknowns": 51,
+        "steps": 10,
+        "seconds": 0.5,
+        "memory_bytes": 1e6,
+        "output_bytes": 2e4,
+        "limits": {"conduction": 0.25, "exchange": 0.5},
+        "binds": "conduction",
+        "physics": {"compiled": ["heat"], "absent": ["mechanics", "flow"]},
+    }
+
+
+def run_point(experiment, beat=None):
+    kappa = experiment.materials["m"].heat.kappa.value
+    end, every = experiment.time.end, experiment.output.every
+    mark(f"run {kappa}")
+    times = np.arange(round(end / every) + 1) * every
+    if kappa == RAISES:
+        raise ValueError("no such luck\nsecond line")
+    if kappa == DIES:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if kappa == DIES_ONCE and f"run {kappa}" not in "".join(Path(os.environ["FAKE_MARKS"], "marks").read_text().splitlines(True)[:-1]):
+        os.kill(os.getpid(), signal.SIGKILL)
+    if kappa == EXITS:
+        print("out of tea", file=sys.stderr, flush=True)
+        os._exit(5)
+    if kappa == HANGS:
+        time.sleep(60)
+    ending = Outcome("completed")
+    if kappa == DIVERGES:
+        times, ending = times[: len(times) // 2], outcome(INVERTED, particle=812, time=0.0134, step=2680)
+    if kappa == SLOW:
+        for step in range(3000):
+            time.sleep(0.01)
+            if beat(step / 3000, step * 0.01):
+                times, ending = times[:3], Outcome("budget", f"stopped at t = {step * 0.01:.3g} s")
+                break
+    elif beat is not None:
+        beat(0.5, end / 2)
+    series = {"temperature_centre": 300 + kappa * times, "heat_ledger": 0 * times}
+    finals = {"temperature_mean": 300 + kappa, "time_to_centre_95_degC": 1 / kappa}
+    run = Run(ending, times, series, finals, steps=10, wall_time=0.01, facts={"binds": "conduction"})
+    if experiment.output.snapshots is not None:
+        run.snapshot_times = times[::2]
+        run.axes = {"x": np.linspace(0, 0.1, 5)}
+        run.grid = {"temperature": np.full((len(times[::2]), 5), kappa, dtype=np.float32)}
+        run.particles = [{"position": np.full((2 + i, 1), kappa), "body": np.zeros(2 + i, dtype=int)} for i in range(len(times[::2]))]
+    return run

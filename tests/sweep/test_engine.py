@@ -1,0 +1,256 @@
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import fake_runner as fake
+import numpy as np
+import pytest
+
+from mpm.config import load
+from mpm.sweep.api import execute, sweep, tree_of
+from mpm.sweep.compare import compare
+from mpm.sweep.engine import Options
+from mpm.sweep.executors import BrokenWorkers
+from mpm.sweep.report import Reporter
+from mpm.sweep.store import Refused, Store
+
+ROOT = Path(__file__).parents[2]
+
+
+def go(config, out, jobs=0, **more):
+    return execute(load(config), out, Options(jobs=jobs, runner="fake_runner", **more))
+
+
+class Ears(Reporter):
+    def __init__(self):
+        self.told = []
+
+    def finished(self, label, line, again):
+        self.told.append((label, line["status"], again))
+
+    def note(self, text):
+        self.told.append(text)
+
+
+@pytest.mark.parametrize("jobs", [0, 1, 2])
+def test_every_point_runs_once_and_is_labelled(config, tmp_path, marks, jobs):
+    result = go(config([0.2, 0.5, 1.0]), tmp_path / "out", jobs)
+    assert result.exit_code == 0 and result.ran == 3 and result.counts["ok"] == 3
+    assert sorted(what for _, what, _ in (row for row in marks() if row[0] == "run")) == ["0.2", "0.5", "1.0"]
+    assert len([row for row in marks() if row[0] == "warm"]) == (jobs == 2)
+    tree = tree_of(tmp_path / "out" / "sweep.nc")
+    assert tree.temperature_mean.dims == ("kappa",) and tree.temperature_mean.values.tolist() == [300.2, 300.5, 301.0]
+    assert tree["series"].temperature_centre.sel(kappa=0.5, time=10).item() == 305
+
+
+def test_the_same_command_again_runs_nothing_and_writes_nothing(config, tmp_path, marks):
+    out = tmp_path / "out"
+    go(config([0.2, 0.5]), out)
+    before = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.name != "lock"}
+    again = go(config([0.2, 0.5]), out)
+    assert again.ran == 0 and again.exit_code == 0 and not again.collected
+    assert before == {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.name != "lock"}
+
+
+def test_an_added_value_runs_only_what_is_new(config, tmp_path, marks):
+    go(config([0.2, 0.5]), tmp_path / "out")
+    assert go(config([0.2, 0.3, 0.5, 0.7]), tmp_path / "out").ran == 2
+    assert [what for _, what, _ in marks()] == ["0.2", "0.5", "0.3", "0.7"]
+    assert tree_of(tmp_path / "out" / "sweep.nc").temperature_mean.values.tolist() == [300.2, 300.3, 300.5, 300.7]
+
+
+def test_an_edited_parameter_is_refused_by_key_and_runs_when_told(config, tmp_path):
+    go(config([0.2, 0.5]), tmp_path / "out")
+    edited = config([0.2, 0.5], time={"end": 12})
+    with pytest.raises(Refused, match=r"time\.end: 10\.0 -> 12\.0"):
+        go(edited, tmp_path / "out")
+    assert go(edited, tmp_path / "out", rerun="stale").ran == 2
+    assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 0  # the old points were kept
+
+
+def test_other_source_is_stale(config, tmp_path, monkeypatch):
+    go(config([0.2, 0.5]), tmp_path / "out")
+    assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 0
+    monkeypatch.setattr("mpm.sweep.engine.source_hash", lambda: "other")
+    assert go(config([0.2, 0.5]), tmp_path / "out").ran == 0
+    assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 2
+    assert go(config([0.2, 0.5]), tmp_path / "out", rerun="all").ran == 2
+
+
+def test_a_failing_point_costs_itself_alone(config, tmp_path):
+    result = go(config([0.2, fake.RAISES, fake.DIVERGES, 1.0]), tmp_path / "out")
+    assert result.exit_code == 3 and {name: n for name, n in result.counts.items() if n} == {"ok": 2, "failed": 1, "diverged": 1}
+    tree = tree_of(tmp_path / "out" / "sweep.nc")
+    assert tree.status.values.tolist() == [0, 1, 4, 0]
+    assert tree.error.values[1].startswith("failed: ValueError: no such luck (fake_runner.py:")
+    assert tree.error.values[2] == "diverged: det F <= 0 at particle 812, t = 0.0134 s, step 2680"
+    assert np.isnan(tree.temperature_mean.values).tolist() == [False, True, True, False]
+    kept = tree["series"].temperature_centre.sel(kappa=fake.DIVERGES).values
+    assert kept[4] == 300 + 4 * fake.DIVERGES and np.isnan(kept[5:]).all()
+
+
+def test_rerun_failed_runs_those_only(config, tmp_path, marks):
+    go(config([0.2, fake.DIVERGES]), tmp_path / "out")
+    assert go(config([0.2, fake.DIVERGES]), tmp_path / "out").ran == 0
+    assert go(config([0.2, fake.DIVERGES]), tmp_path / "out", rerun="failed").ran == 1
+    assert [what for _, what, _ in marks()] == ["0.2", "17.0", "17.0"]
+
+
+def test_all_failing_is_four_and_fail_fast_leaves_the_rest_pending(config, tmp_path):
+    assert go(config([fake.DIVERGES]), tmp_path / "all").exit_code == 4
+    fast = go(config([fake.DIVERGES, 0.2, 0.5]), tmp_path / "fast", max_failures=1)
+    assert fast.exit_code == 3 and fast.counts["pending"] == 2
+    assert tree_of(tmp_path / "fast" / "sweep.nc").status.values.tolist() == [4, 6, 6]
+    assert go(config([fake.DIVERGES, 0.2, 0.5]), tmp_path / "fast").counts["pending"] == 0
+
+
+def test_a_worker_that_dies_costs_its_point(config, tmp_path, marks):
+    result = go(config([fake.DIES, fake.EXITS, 0.2, 0.5]), tmp_path / "out", jobs=2, retries=1)
+    tree = tree_of(tmp_path / "out" / "sweep.nc")
+    assert tree.status.values.tolist() == [3, 3, 0, 0] and result.exit_code == 3
+    assert tree.error.values[0].startswith("killed: worker ended by signal 9 (SIGKILL")
+    assert tree.error.values[1] == "killed: worker ended with code 5: out of tea"
+    assert tree.attempts.values.tolist() == [2, 2, 1, 1]
+    assert len([row for row in marks() if row[1] == "14.0"]) == 2
+
+
+def test_a_point_that_dies_once_is_tried_again(config, tmp_path, marks):
+    result = go(config([fake.DIES_ONCE, 0.2]), tmp_path / "out", jobs=1)
+    assert result.exit_code == 0 and result.counts["ok"] == 2
+    assert tree_of(tmp_path / "out" / "sweep.nc").attempts.values.tolist() == [2, 1]
+
+
+@pytest.mark.parametrize("kappa, error", [(fake.SLOW, "timeout: stopped at t = "), (fake.HANGS, "timeout: no answer after 0.3 s")])
+def test_timeout_stops_gently_then_hard(config, tmp_path, kappa, error, monkeypatch):
+    monkeypatch.setattr("mpm.sweep.engine.GRACE", 0.5)
+    result = go(config([kappa, 0.2]), tmp_path / "out", jobs=2, timeout=0.3)
+    tree = tree_of(tmp_path / "out" / "sweep.nc")
+    assert tree.status.values.tolist() == [2, 0] and tree.error.values[0].startswith(error) and result.exit_code == 3
+    assert np.isfinite(tree["series"].temperature_centre.values[0, :3]).all() == (kappa == fake.SLOW)
+
+
+def test_time_budget_leaves_pending_points_and_goes_on(config, tmp_path):
+    first = go(config([0.2, fake.SLOW, 0.5]), tmp_path / "out", jobs=1, time_budget=1.5)
+    assert first.exit_code == 75 and first.counts["pending"] == 2 and first.counts["ok"] == 1
+    assert tree_of(tmp_path / "out" / "sweep.nc").status.values.tolist() == [0, 6, 6]
+
+
+def test_resumed_equals_uninterrupted(config, tmp_path):
+    whole = config([0.2, fake.DIVERGES, 0.5, 1.0], output={"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"]}})
+    go(whole, tmp_path / "one")
+    go(whole, tmp_path / "two", max_failures=1)
+    store = Store(tmp_path / "two")
+    victim = next(path for path in store.out.glob("points/*/*.nc"))
+    victim.write_bytes(victim.read_bytes()[:-100])
+    resumed = go(whole, tmp_path / "two", jobs=2)
+    assert resumed.ran == 3 and list(store.out.glob("points/*/*.damaged"))
+    assert compare(tmp_path / "one", tmp_path / "two") == []
+
+
+def test_workers_that_cannot_start_are_told(config, tmp_path):
+    with pytest.raises(BrokenWorkers, match=r"ended before they were ready.*no_such_runner"):
+        execute(load(config([0.2])), tmp_path, Options(jobs=1, runner="no_such_runner"))
+
+
+def test_a_full_disk_stops_the_sweep_and_keeps_what_is_there(config, tmp_path, monkeypatch):
+    from mpm.records import netcdf
+
+    real, left = os.write, [4]
+
+    def write(descriptor, data):
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(28, "No space left on device")
+        return real(descriptor, data)
+
+    monkeypatch.setattr(netcdf.os, "write", write)
+    with pytest.raises(OSError, match=r"cannot write .* No space left on device \(\d+ bytes free\)"):
+        go(config([0.2, 0.5, 1.0, 2.0, 3.0]), tmp_path / "out")
+    monkeypatch.undo()
+    again = go(config([0.2, 0.5, 1.0, 2.0, 3.0]), tmp_path / "out")
+    assert again.exit_code == 0 and 0 < again.ran < 5
+
+
+def test_events_are_told_as_they_happen(config, tmp_path):
+    ears = Ears()
+    execute(load(config([fake.DIES, 0.2])), tmp_path, Options(jobs=1, retries=1, runner="fake_runner"), ears)
+    assert ears.told == [("kappa=14", 3, True), ("kappa=0.2", 0, False), ("kappa=14", 3, False)]
+
+
+def test_python_face_in_a_thread(config, tmp_path):
+    trees = []
+    work = threading.Thread(target=lambda: trees.append(sweep(load(config([0.2])), tmp_path, jobs=0, runner="fake_runner")))
+    work.start()
+    work.join()
+    assert trees[0].status.values.tolist() == [0]
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+sys.path[:0] = [{root!r}, {fakes!r}]
+from mpm.config import load
+from mpm.sweep.api import execute
+from mpm.sweep.engine import Options
+print("go", flush=True)
+sys.exit(execute(load({config!r}), Path({out!r}), Options(jobs=2, runner="fake_runner")).exit_code)
+"""
+
+
+def start(config, out, marks):
+    code = SCRIPT.format(root=str(ROOT), fakes=str(ROOT / "tests" / "fakes"), config=config, out=str(out))
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    end = time.monotonic() + 20
+    while len([row for row in marks() if row[0] == "run"]) < 2 and time.monotonic() < end:
+        time.sleep(0.05)
+    return process
+
+
+def gone(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    return Path(f"/proc/{pid}/stat").read_text().split()[2] == "Z"
+
+
+def all_gone(pids, within):
+    end = time.monotonic() + within
+    while not all(map(gone, pids)) and time.monotonic() < end:
+        time.sleep(0.02)
+    return all(map(gone, pids))
+
+
+@pytest.mark.parametrize("blows, code, within", [([signal.SIGTERM], 143, 2.0), ([signal.SIGINT, signal.SIGINT], 130, 2.0), ([signal.SIGKILL], -9, 2.0)])
+def test_signals_stop_in_time_and_leave_no_orphan(config, tmp_path, marks, blows, code, within):
+    process = start(config([fake.SLOW, fake.HANGS, 0.2]), tmp_path / "out", marks)
+    began = time.monotonic()
+    for blow in blows:
+        process.send_signal(blow)
+        time.sleep(0.1)
+    process.communicate(timeout=20)
+    assert process.returncode == code
+    assert all_gone({int(row[-1]) for row in marks()}, within - (time.monotonic() - began))
+
+
+def test_ctrl_c_finishes_what_runs(config, tmp_path, marks):
+    process = start(config([0.2, fake.SLOW, 0.5, 0.7], time={"end": 10}), tmp_path / "out", marks)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.3)
+    assert process.poll() is None  # the slow one is still being finished
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=20)
+    assert process.returncode == 143
+
+
+def test_two_sweeps_on_one_folder(config, tmp_path, marks):
+    process = start(config([fake.SLOW, fake.HANGS]), tmp_path / "out", marks)
+    with pytest.raises(Refused, match=f"in use by process {process.pid} on"):
+        go(config([0.2]), tmp_path / "out")
+    process.kill()
+    process.communicate(timeout=20)
+    assert go(config([0.2]), tmp_path / "out").exit_code == 0
