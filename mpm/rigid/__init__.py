@@ -1,0 +1,2 @@
+from mpm.rigid.run import Method, RigidRun, solve
+from mpm.rigid.system import RigidBody

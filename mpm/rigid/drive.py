@@ -1,0 +1,131 @@
+"""The loop over steps, the same for every method: sizes from the error estimate, outputs and crossings from dense output.
+
+A method has   attempt(dt) -> error over tolerance (nan or inf: rejected),  accept(),  dense(s) -> (basis (S, m), columns (m, N), exchanged (S,)),
+               temperature(state) -> theta - zero,  heat(state) [J],  first_size(end),  power (error ~ dt^power),  replan (a new size is costly),
+               floor (steps this short are taken whatever their error: the cell resolves nothing faster)
+state(t + s dt) = before + basis @ columns is the method's own variable: temperature, or specific enthalpy.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import brentq
+
+from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW
+from mpm.rigid.nodes import interpolate
+
+SAFETY, GROW, SHRINK, FEWEST = 0.8, 6.0, 0.2, 1e-12
+
+
+@dataclass
+class Watch:
+    """What is looked at: output times, probes (nodes, values), thresholds (probe, temperature less zero)."""
+
+    times: np.ndarray
+    probes: tuple[np.ndarray, np.ndarray]
+    thresholds: list[tuple[int, float]]
+    sight: tuple[np.ndarray, np.ndarray]
+    stop: object = None
+
+
+@dataclass
+class Trace:
+    """What was seen. Arrays a time: probes (T, P), mean, min, max of theta - zero [K]; heat, exchanged [J]."""
+
+    probes: list = field(default_factory=list)
+    mean: list = field(default_factory=list)
+    least: list = field(default_factory=list)
+    most: list = field(default_factory=list)
+    heat: list = field(default_factory=list)
+    exchanged: list = field(default_factory=list)
+    crossings: list = field(default_factory=list)
+    steps: int = 0
+    rejected: int = 0
+    smallest: float = math.inf
+    largest: float = 0.0
+    code: int = COMPLETED
+    time: float = 0.0
+    final: np.ndarray | None = None
+
+
+def record(trace, watch, method, states, exchanged, weight):
+    """Adds rows for states (S, N)."""
+    for state, q in zip(states, exchanged, strict=True):
+        theta = method.temperature(state)
+        seen = interpolate(*watch.sight, theta)
+        trace.probes.append(interpolate(*watch.probes, theta))
+        trace.mean.append(weight @ theta / weight.sum())
+        trace.least.append(seen.min())
+        trace.most.append(seen.max())
+        trace.heat.append(method.heat(state))
+        trace.exchanged.append(q)
+
+
+def crossing(method, watch, before, t, dt, probe, level):
+    """Time in the step at which a probe reaches a level, by the dense output."""
+    index, value = watch.probes[0][probe], watch.probes[1][probe]
+
+    def above(s):
+        basis, columns, _ = method.dense(np.array([s]))
+        return float(value @ method.temperature(before[index] + (basis @ columns[:, index])[0])) - level
+
+    low, high = above(0.0), above(1.0)
+    return t + dt * brentq(above, 0.0, 1.0, xtol=1e-12) if low * high < 0 else t + dt
+
+
+def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) -> Trace:
+    """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked."""
+    trace, t = Trace(crossings=[math.nan] * len(watch.thresholds)), 0.0
+    state = method.state
+    ahead = np.asarray(watch.times, dtype=float)
+    first = int(np.searchsorted(ahead, 0.0, side="right"))
+    record(trace, watch, method, [state] * first, [0.0] * first, weight)
+    seen = interpolate(*watch.probes, method.temperature(state))
+    for k, (probe, level) in enumerate(watch.thresholds):
+        if seen[probe] == level:
+            trace.crossings[k] = 0.0
+    wanted = fixed or method.first_size(end)
+    count = max(1, math.ceil((end - t) / wanted * (1 - 1e-9)))
+    dt = (end - t) / count
+    while count > 0:
+        error = method.attempt(dt)
+        if fixed:
+            error = 0.0 if math.isfinite(error) else error
+        if not (error <= 1.0 or (math.isfinite(error) and dt <= method.floor)):
+            trace.rejected += 1
+            factor = max(SHRINK, SAFETY * error ** (-1 / method.power)) if math.isfinite(error) else SHRINK
+            count = math.ceil((end - t) / max(dt * factor, min(method.floor, 0.9 * dt)))
+            dt = (end - t) / count
+            if dt < FEWEST * end or fixed:
+                trace.code = STEP_UNDERFLOW if math.isfinite(error) else NON_FINITE
+                break
+            continue
+        method.accept()
+        before, state, count = state, method.state, count - 1
+        new = end if count == 0 else t + dt
+        last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
+        if last > first:
+            basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
+            record(trace, watch, method, before + basis @ columns, exchanged, weight)
+            first = last
+        now = interpolate(*watch.probes, method.temperature(state))
+        for k, (probe, level) in enumerate(watch.thresholds):
+            if math.isnan(trace.crossings[k]) and (seen[probe] - level) * (now[probe] - level) <= 0:
+                trace.crossings[k] = crossing(method, watch, before, t, dt, probe, level)
+        seen, t = now, new
+        trace.steps += 1
+        trace.smallest, trace.largest = min(trace.smallest, dt), max(trace.largest, dt)
+        if watch.stop is not None and watch.stop(t / end, t):
+            trace.code = BUDGET if count else COMPLETED
+            break
+        if count and not fixed:
+            factor = min(GROW, SAFETY * max(error, 1e-9) ** (-1 / method.power))
+            wanted = max(dt * factor, min(method.floor, dt))
+            fewer = max(1, math.ceil((end - t) / wanted))
+            if not method.replan or count - fewer > 2 or factor < 0.9:
+                count = fewer
+                dt = (end - t) / count
+    trace.time = t
+    trace.final = state
+    return trace

@@ -1,0 +1,85 @@
+"""What a rigid body's shape and grid fix, whatever kappa, beta, alpha: quadrature, mass, stiffness and surface matrices.
+
+    M_ij = int N_i N_j,   K_ij = int grad N_i . grad N_j,   B_ij = int_side N_i N_j      (axisymmetric: with the weight r, everything per radian)
+
+so that kappa K + beta B and rho alpha M of every point of a sweep come from one assembly. `geometry` keeps the last few.
+"""
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from mpm.rigid.nodes import Nodes, assemble, evaluate, make_nodes
+
+ORDER = 4  # products of two quadratic splines, exact
+
+
+class Geometry(NamedTuple):
+    """Stencils of unit coefficients and the points they came from."""
+
+    nodes: Nodes
+    dimension: int
+    mass: np.ndarray  # (n, N)
+    stiffness: np.ndarray  # (n, N)
+    exchange: tuple[np.ndarray, ...]  # (n, N) a surface
+    volume: np.ndarray  # (N,) int N_i
+    area: tuple[np.ndarray, ...]  # (N,) int_side N_i, a surface
+    active: np.ndarray  # (N,) nodes whose spline reaches the body
+    x: np.ndarray  # (Q, d) volume points
+    w: np.ndarray  # (Q,) with the weight r where axisymmetric
+    sight: tuple[np.ndarray, np.ndarray]  # splines at the points where extremes are looked for: cells' quadrature points nearest the middle, and the surface
+
+
+def evaluated(nodes: Nodes, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and values of the splines at points x (P, d)."""
+    return evaluate(nodes, x.shape[1], np.ascontiguousarray(x, dtype=np.float64))
+
+
+def row_sums(stencil: np.ndarray, diff: np.ndarray) -> np.ndarray:
+    """A 1 for a symmetric stencil."""
+    total = stencil[0].copy()
+    for s, k in zip(stencil[1:], diff[1:], strict=True):
+        total += s
+        total[k:] += s[:-k]
+    return total
+
+
+@functools.lru_cache(maxsize=8)
+def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...]) -> Geometry:
+    """Matrices of `shape` on the grid of cell `h` whose node 0 lies at `origin`, one exchange matrix for each of `sides`.
+
+    shape  hashable, with bounds(), cut(edges, order) and faces(normal (S, d), side) -> (S,) bool: mpm.scene.shapes
+    """
+    lower, upper = (np.array(b, dtype=float) for b in shape.bounds())
+    d = len(lower)
+    if axisymmetric:
+        lower[0] = max(lower[0], 0.0)
+    nodes, edges = make_nodes(lower, upper, h, np.asarray(origin, dtype=float))
+    counts = np.array([len(e) - 1 for e in edges], dtype=np.int64)
+    if axisymmetric and edges[0][0] < 0:
+        edges[0] = np.concatenate([[0.0], edges[0][1:]])  # the axis cuts the first cell
+    volume, surface = shape.cut(edges, ORDER)
+    w = volume.w * volume.x[:, 0] if axisymmetric else volume.w
+    sw = surface.w * surface.x[:, 0] if axisymmetric else surface.w
+    mass, stiffness = np.zeros((2, len(nodes.diff), nodes.size))
+    assemble(nodes, d, volume.x, w, volume.cell, counts, True, mass, stiffness)
+    exchange = []
+    for side in sides:
+        part = shape.faces(surface.normal, side)
+        stencil = np.zeros_like(mass)
+        assemble(nodes, d, surface.x[part], sw[part], surface.cell[part], counts, False, stencil, stencil)
+        exchange.append(stencil)
+    sight = evaluated(nodes, np.concatenate([volume.x[_middles(volume)], surface.x]))
+    sums = tuple(row_sums(b, nodes.diff) for b in exchange)
+    return Geometry(nodes, d, mass, stiffness, tuple(exchange), row_sums(mass, nodes.diff), sums, mass[0] > 0, volume.x, w, sight)
+
+
+def _middles(volume) -> np.ndarray:
+    """One quadrature point a cell: the one nearest to the mean of the cell's points."""
+    cell, key = np.unique(volume.cell, return_inverse=True)
+    number = np.bincount(key)
+    mean = np.stack([np.bincount(key, weights=c) / number for c in volume.x.T], axis=-1)
+    far = ((volume.x - mean[key]) ** 2).sum(1)
+    order = np.lexsort((far, key))
+    return order[np.searchsorted(key[order], np.arange(len(cell)))]

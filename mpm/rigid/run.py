@@ -1,0 +1,138 @@
+"""Solve the heat equation in rigid bodies: choose a method, run each body, put the pieces together."""
+
+import math
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mpm.materials.laws import Constant
+from mpm.outcome import COMPLETED, Outcome, outcome
+from mpm.rigid.chebyshev import ChebyshevSteps
+from mpm.rigid.drive import Watch, drive
+from mpm.rigid.geometry import evaluated
+from mpm.rigid.linear import LinearSteps
+from mpm.rigid.nodes import interpolate
+from mpm.rigid.system import RigidBody, System, make_system
+from mpm.materials.roles import value
+
+
+@dataclass(frozen=True)
+class Method:
+    """`kind` auto, implicit or explicit; implicit: order 4 or 2, tolerance (relative error a step); `step` [s] fixes the size of implicit steps."""
+
+    kind: str = "auto"
+    order: int = 4
+    tolerance: float = 1e-4
+    step: float | None = None
+
+
+@dataclass
+class RigidRun:
+    """What came out. `series` holds an array over `times` for each name; `crossings` maps (probe, temperature) to a time, nan where never reached."""
+
+    outcome: Outcome
+    times: np.ndarray
+    series: dict[str, np.ndarray]
+    crossings: dict[tuple[str, float], float]
+    steps: int
+    rejected: int
+    unknowns: int
+    wall_time: float
+    facts: dict
+    bodies: list[tuple[System, Any, np.ndarray]] = field(repr=False, default_factory=list)
+
+    def sample(self, x: np.ndarray, body: int | None = None) -> np.ndarray:
+        """Temperature [K] at points x (P, d) at the last time; nan outside every body, unless one is named: then its splines go on."""
+        x = np.atleast_2d(np.asarray(x, dtype=float))
+        out = np.full(len(x), np.nan)
+        for k, (system, method, shape_state) in enumerate(self.bodies):
+            shape, state = shape_state
+            here = np.ones(len(x), dtype=bool) if body == k else (shape.distance(x) <= 1e-9 * system.geometry.nodes.h) & (body is None)
+            out[here] = system.zero + interpolate(*evaluated(system.geometry.nodes, x[here]), method.temperature(state))
+        return out
+
+    def points(self, body: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Quadrature points (Q, d) and weights (Q,) of a body, for norms of an error."""
+        geometry = self.bodies[body][0].geometry
+        return geometry.x, geometry.w
+
+
+def choose(system: System, method: Method):
+    """The method's object for one body."""
+    linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant)
+    if method.kind == "explicit" or (method.kind == "auto" and not linear):
+        return ChebyshevSteps(system, method.tolerance)
+    return LinearSteps(system, method.tolerance, method.order)
+
+
+def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None) -> RigidRun:
+    """Heat in rigid bodies from 0 to `end` [s].
+
+    bodies      RigidBody each; they do not touch, and each has its own nodes
+    space       1, 2, "axisymmetric" or 3;  h: cell [m];  origin: place of node 0 (default zero): shift it to shift the grid against the bodies
+    times       output times [s], any; probes {name: x}, thresholds [(probe name, temperature [K])]
+    method      Method; stop(fraction, time) -> True ends the run with outcome `budget`
+    reference   temperature at which heat content counts as zero [K]; the first body's start unless given
+    Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric).
+    """
+    start = time.perf_counter()
+    method, probes, thresholds = method or Method(), probes or {}, list(thresholds)
+    axisymmetric = space == "axisymmetric"
+    dimension = 2 if axisymmetric else int(space)
+    origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
+    reference = bodies[0].temperature if reference is None else reference
+    times = np.asarray(times, dtype=float)
+    places = np.array([np.atleast_1d(x) for x in probes.values()], dtype=float).reshape(-1, dimension)
+    owner = np.argmin([body.shape.distance(places) for body in bodies], axis=0) if len(places) else np.zeros(0, dtype=int)
+    names, parts, run_bodies = list(probes), [], []
+    for k, body in enumerate(bodies):
+        system = make_system(body, axisymmetric, h, origin)
+        steps = choose(system, method)
+        mine = np.flatnonzero(owner == k)
+        levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]
+        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, stop)
+        trace = drive(steps, watch, float(end), system.geometry.volume, method.step)
+        parts.append((system, steps, trace, mine))
+        run_bodies.append((system, steps, (body.shape, trace.final)))
+        if trace.code != COMPLETED:
+            break
+    return _gather(parts, run_bodies, times, names, thresholds, reference, start)
+
+
+def _content(system: System, reference: float) -> float:
+    """Heat of the body at `zero` above that at `reference` [J]."""
+    from mpm.materials.roles import enthalpy
+
+    return system.density * float(system.geometry.volume.sum()) * (enthalpy(system.alpha, system.zero) - enthalpy(system.alpha, reference))
+
+
+def _gather(parts, run_bodies, times, names, thresholds, reference, start) -> RigidRun:
+    shown = min(len(trace.heat) for _, _, trace, _ in parts)
+    series = {name: np.full(shown, np.nan) for name in (f"temperature.{n}" for n in names)}
+    series |= {name: np.zeros(shown) for name in ("temperature.mean", "heat", "heat_exchanged", "heat_ledger")}
+    least, most, capacity, crossings, last = [], [], 0.0, {}, 0.0
+    for system, steps, trace, mine in parts:
+        seen = np.array(trace.probes).reshape(len(trace.heat), len(mine))[:shown] + system.zero
+        for column, k in enumerate(mine):
+            series[f"temperature.{names[k]}"] = seen[:, column]
+        begin = steps.heat(steps.first)
+        heat, exchanged = np.array(trace.heat)[:shown], np.array(trace.exchanged)[:shown]
+        series["heat"] += heat + _content(system, reference)
+        series["heat_exchanged"] += exchanged
+        series["heat_ledger"] += (heat - begin) - exchanged
+        share = system.density * float(system.geometry.volume.sum()) * value(system.alpha, system.start)
+        series["temperature.mean"] += share * (np.array(trace.mean)[:shown] + system.zero)
+        capacity += share
+        least.append(np.array(trace.least)[:shown] + system.zero)
+        most.append(np.array(trace.most)[:shown] + system.zero)
+        crossings |= {(name, level): t for (name, level), t in zip([x for x in thresholds if names.index(x[0]) in mine], trace.crossings, strict=True)}
+    series["temperature.mean"] /= capacity
+    series["temperature.min"], series["temperature.max"] = np.min(least, axis=0), np.max(most, axis=0)
+    worst = next((trace for _, _, trace, _ in parts if trace.code != COMPLETED), parts[-1][2])
+    steps, rejected = sum(p[2].steps for p in parts), sum(p[2].rejected for p in parts)
+    facts = {"rigid_method": [type(p[1]).__name__ for p in parts], "smallest_step": min(p[2].smallest for p in parts), "largest_step": max(p[2].largest for p in parts)}
+    unknowns = sum(int(p[0].geometry.active.sum()) for p in parts)
+    result = outcome(worst.code, time=None if worst.code == COMPLETED else worst.time, step=worst.steps if worst.code != COMPLETED else -1)
+    return RigidRun(result, times[:shown], series, crossings, steps, rejected, unknowns, time.perf_counter() - start, facts, run_bodies)
