@@ -72,7 +72,7 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
         wall_time=float(run.wall_time),
         times=np.asarray(run.times, dtype=float),
         series={name: np.asarray(values, dtype=float) for name, values in run.series.items()},
-        finals={name: float(value) if status == OK else np.nan for name, value in run.finals.items()},
+        finals={name: float(value) if status == OK else np.nan for name, value in run.finals.items() if name not in ("steps", "wall_time")},
         axes=dict(run.axes),
         snapshot_times=np.asarray(run.snapshot_times, dtype=float),
         grid=dict(run.grid),

@@ -10,8 +10,6 @@ import numpy as np
 from mpm.records.netcdf import Array
 from mpm.records.variables import VARIABLES
 
-NOT_PARAMETERS = ("output", "sweep", "smoke", "title")
-
 
 def storable(values: Any) -> np.ndarray:
     """Values as numbers or text: a law or another kind on an axis becomes JSON, truth 0 or 1."""
@@ -35,17 +33,15 @@ def planned(plan: Any) -> dict[str, Array]:
 
 def fixed(plan: Any, swept: list[str], taken: set[str]) -> dict[str, Array]:
     """Scalar coordinates: every quantity of the config that does not vary, by its last word where that is unique, else by its path."""
-    from mpm.config import Experiment
-    from mpm.config.slots import Slot, leaves
+    from mpm.config.names import Names
 
     if not plan.cases:
         return {}
     experiment = plan.cases[0].experiment
-    resolved, rows = experiment.resolved(), {}
-    for path, slot in leaves(Slot(Experiment), experiment):
-        name = ".".join(map(str, path))
-        value = at(resolved, path)
-        if slot.quantity and path[0] not in NOT_PARAMETERS and isinstance(value, int | float | str) and name not in swept:
+    names, resolved, rows = Names(experiment), experiment.resolved(), {}
+    for path, slot in names.slots.items():
+        name, value = names.spoken[path], at(resolved, path)
+        if slot.quantity and path[0] != "output" and isinstance(value, int | float | str) and name not in swept:
             number = math.inf if value == ".inf" else value
             if isinstance(number, int | float) and not isinstance(path[-1], int):
                 rows[name] = (float(number), slot)
@@ -54,7 +50,7 @@ def fixed(plan: Any, swept: list[str], taken: set[str]) -> dict[str, Array]:
     found = {}
     for name, (number, slot) in rows.items():
         word = name.rsplit(".", 1)[-1]
-        attrs = {"units": slot.quantity.unit or "1", "long_name": slot.description or slot.quantity.name, "config_path": name}
+        attrs = {"units": slot.quantity.unit.replace("**", "") or "1", "long_name": slot.description or slot.quantity.name, "config_path": name}
         found[word if words[word] == 1 and word not in blocked else name] = Array((), number, attrs)
     return found
 

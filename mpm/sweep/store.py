@@ -112,13 +112,14 @@ class Store:
 
 
 def flatten(value: Any, path: str = "") -> dict[str, Any]:
-    """A tree of mappings and lists as {path: leaf}."""
+    """A tree of mappings and lists as {path: leaf}; entries of a list by their `name` where they have one, as sweeps call them."""
     items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list | tuple) else None
     if items is None or not value:
         return {path: value}
     flat: dict[str, Any] = {}
     for key, inner in items:
-        flat |= flatten(inner, f"{path}.{key}" if path else str(key))
+        said = inner["name"] if isinstance(key, int) and isinstance(inner, dict) and inner.get("name") else key
+        flat |= flatten(inner, f"{path}.{said}" if path else str(said))
     return flat
 
 

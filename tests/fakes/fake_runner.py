@@ -11,7 +11,7 @@ import numpy as np
 from mpm.outcome import INVERTED, Outcome, outcome
 from mpm.state import Run
 
-RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0
+RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS, BRIEF = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0
 
 
 def mark(text):
@@ -58,8 +58,8 @@ def run_point(experiment, beat=None):
     ending = Outcome("completed")
     if kappa == DIVERGES:
         times, ending = times[: len(times) // 2], outcome(INVERTED, particle=812, time=0.0134, step=2680)
-    if kappa == SLOW:
-        for step in range(3000):
+    if kappa in (SLOW, BRIEF):
+        for step in range(3000 if kappa == SLOW else 100):
             time.sleep(0.01)
             if beat(step / 3000, step * 0.01):
                 times, ending = times[:3], Outcome("budget", f"stopped at t = {step * 0.01:.3g} s")

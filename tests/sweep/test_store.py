@@ -67,6 +67,7 @@ def test_a_smoke_folder_gives_way_to_the_full_run_but_not_the_reverse(tmp_path):
 
 
 def test_differences_are_paths():
+    assert flatten({"surfaces": [{"name": "top", "beta": 1}, {"beta": 2}]}) == {"surfaces.top.name": "top", "surfaces.top.beta": 1, "surfaces.1.beta": 2}
     assert flatten({"a": {"b": [1, {"c": 2}]}, "d": {}}) == {"a.b.0": 1, "a.b.1.c": 2, "d": {}}
     assert differences({"a": 1, "b": {"c": 1}}, {"a": 2, "b": {"c": 2}}, {"b"}) == ["a: 1 -> 2"]
 
