@@ -5,8 +5,6 @@ Exit codes   0 ok; 1 internal error, disk, or (compare) different; 2 usage or co
 
 import os
 import sys
-import tempfile
-import traceback
 
 import typer
 from mpm_cli.collect import collect
@@ -18,7 +16,7 @@ from mpm_cli.run import run
 from mpm_cli.schema import schema
 from mpm_cli.status import status
 from mpm_cli.sweep import sweep
-from mpm_cli.talk import warn
+from mpm_cli.talk import internal, warn
 from mpm_cli.warmup import warmup
 
 COMMANDS = (run, sweep, plan, status, collect, compare, plot, schema, info, warmup)
@@ -71,12 +69,5 @@ def told(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename is not None:
         warn(f"error: {error.filename}: {error.strerror}")
         return 1
-    return internal(error)
-
-
-def internal(error: Exception) -> int:
-    """Our own fault: one line here, the trace (without values) in a file."""
-    with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8") as file:
-        traceback.print_exception(error, file=file)
-    warn(f"internal error: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
+    internal(error, "internal error")
     return 1

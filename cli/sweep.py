@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import typer
 from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, limit, load
 from mpm_cli.progress import reporter
-from mpm_cli.talk import document, say, warn
+from mpm_cli.talk import document, internal, say, warn
 
 RERUN = ("failed", "stale", "all")
 
@@ -55,7 +55,7 @@ def sweep(
     experiment = load(config, set_, smoke)
     options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke)
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
-    picture = draw(result, quiet)
+    picture = draw(result)
     if as_json:
         document(summary(result, picture))
     else:
@@ -64,17 +64,22 @@ def sweep(
     raise typer.Exit(result.exit_code)
 
 
-def draw(result: Any, quiet: bool) -> Any:
+def draw(result: Any) -> Any:
     """OUT/sweep.png, where it is missing or older than the dataset."""
     picture, dataset = result.out / "sweep.png", result.out / "sweep.nc"
     if result.stopped == "terminated" or not dataset.exists():
         return None
     if not result.collected and picture.exists():
         return picture
-    from mpm.plots import overview
     from mpm.sweep.api import tree_of
 
-    overview(tree_of(dataset), picture)
+    try:
+        from mpm.plots import overview
+
+        overview(tree_of(dataset), picture)
+    except Exception as error:  # the results are there and sound; a figure that fails is told, and does not hide them
+        internal(error, "the figure failed")
+        return None
     return picture
 
 

@@ -3,6 +3,8 @@
 import json
 import math
 import sys
+import tempfile
+import traceback
 from typing import Any
 
 
@@ -33,3 +35,10 @@ def say(text: str, as_json: bool = False, quiet: bool = False) -> None:
 def warn(text: str) -> None:
     """A line that is told always, on stderr."""
     sys.stderr.write(text + "\n")
+
+
+def internal(error: Exception, what: str) -> None:
+    """Our own fault: one line here, the trace (without values) in a file."""
+    with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8") as file:
+        traceback.print_exception(error, file=file)
+    warn(f"{what}: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")

@@ -82,8 +82,8 @@ class Menu:
             if value not in self.kinds:
                 raise problem("kind", f"unknown {self.what} {value!r}", names)
             if not self.kinds[value].bare():
-                required = [key for key, field in self.kinds[value].model_fields.items() if field.is_required()]
-                raise problem("kind", f"{self.what} {value!r} needs its parameters", [f"{{{value}: {{{', '.join(key + ': ...' for key in required)}}}}}"])
+                parameters = ", ".join(f"{key}: ..." for key in self.kinds[value].model_fields)
+                raise problem("kind", f"{self.what} {value!r} needs its parameters", f"{{{value}: {{{parameters}}}}}")
             return value
         if not isinstance(value, dict):
             raise problem("kind", f"expected a mapping with one key that names the {self.what}", names)

@@ -78,7 +78,7 @@ class Spin:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
         number = self.quantity.__get_pydantic_json_schema__(schema, handler)
-        return {"anyOf": [*number["anyOf"], {"type": "array", "items": number}], "description": number["description"]}
+        return {**number, "anyOf": [*number["anyOf"], {"type": "array", "items": number}]}
 
     def validate(self, value: Any) -> float | tuple[float, ...]:
         """A float, or a tuple of floats."""

@@ -8,13 +8,12 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from mpm.config.base import Model
 from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES
 from mpm.config.explain import Finding
 from mpm.config.loose import MISSING, Unknown
 from mpm.config.problems import near
 from mpm.config.shapes_fit import misfits, outside
-from mpm.config.slots import Path
+from mpm.config.slots import Path, Slot
 
 MOST_CELLS = 10**9
 MOST_SAMPLES = 10**6
@@ -36,6 +35,11 @@ def check(experiment: Any) -> list[Finding]:
             except Unknown:
                 continue
     return found
+
+
+def unread(path: Path, slot: Slot) -> bool:
+    """Whether no rule reads the value of a path, so that changing it cannot break one: numbers and laws of materials and surfaces."""
+    return path[0] in ("materials", "surfaces") and slot.quantity is not None
 
 
 def once(experiment: Any) -> Iterator[tuple]:
@@ -283,5 +287,3 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (anything, once), (surface, each("surfaces")), (surface_side, each("surfaces")), (surface_names, once), (walls, each("walls")), (mechanics, once),
     (gravity, once), (clock, once), (probe, probes), (observable, observables), (snapshots, once), (method, once), (exact, once),
 ]  # fmt: skip
-
-__all__ = ["Model", "check"]

@@ -82,19 +82,36 @@ class Experiment(Model):
 
     def key(self) -> dict[str, Any]:
         """What determines a point's result, without defaults: equal for 1, 1.0 and "1000 mm", blind to title, sweep and smoke."""
-        key = {name: value for name, value in plain(self, defaults=False).items() if name not in NOT_KEYED}
-        if not any(self.method.offset):
-            key["method"].pop("offset")
-        for section, name in ((key, "materials"), (key, "walls"), (key["output"], "probes")):
-            if name in section:
-                section[name] = dict(sorted(section[name].items()))
-        return key
+        sections = {name: self.key_of(name) for name in Experiment.model_fields}
+        return {name: data for name, data in sections.items() if data}
+
+    def key_of(self, section: str) -> Any:
+        """One section of the key, None if it says nothing; names are sorted where their order means nothing."""
+        value = getattr(self, section)
+        if section in NOT_KEYED or value is None:
+            return None
+        data = plain(value, defaults=False)
+        if section == "method" and not any(self.method.offset):
+            data.pop("offset")
+        if section == "walls":
+            data = {side: wall for side, wall in data.items() if wall != {"slip": {}}}
+        if section == "output" and "probes" in data:
+            data["probes"] = dict(sorted(data["probes"].items()))
+        return dict(sorted(data.items())) if section in ("materials", "walls") else data
+
+    def key_line(self, section: str) -> str:
+        """One section of the key as text."""
+        return f"{section} {json.dumps(data, separators=(',', ':'))}\n" if (data := self.key_of(section)) else ""
+
+    def identify(self, known: dict[str, str] | None = None) -> str:
+        """Sixteen letters of a hash of the key and the version of the physics; `known` has lines of the key that need not be made again."""
+        lines = (known[name] if known and name in known else self.key_line(name) for name in Experiment.model_fields)
+        return hashlib.sha256(f"physics {PHYSICS_VERSION}\n{''.join(lines)}".encode()).hexdigest()[:16]
 
     @property
     def run_id(self) -> str:
-        """Sixteen letters of a hash of the key and the version of the physics."""
-        text = json.dumps([PHYSICS_VERSION, self.key()], separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+        """Sixteen letters that stand for everything that determines the result."""
+        return self.identify()
 
     def template(self) -> dict[str, Any]:
         """The resolved config as one point of a sweep: nothing varies, and derived defaults are left to be derived again."""

@@ -96,7 +96,8 @@ class Law(Menu):
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
         kinds = super().__get_pydantic_json_schema__(schema, handler)
         number = self.quantity.__get_pydantic_json_schema__(schema, handler)
-        return {"anyOf": [*number["anyOf"], {"oneOf": kinds["oneOf"]}], "description": f"{number['description']}: a number or a function of temperature"}
+        constant = {"type": "object", "properties": {"constant": number}, "required": ["constant"], "additionalProperties": False}
+        return {**number, "anyOf": [*number["anyOf"], {"oneOf": [constant, *kinds["oneOf"][1:]]}]}
 
 
 @functools.cache

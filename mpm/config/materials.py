@@ -22,6 +22,11 @@ class Hencky(Kind):
     mu: Modulus | None = doc(None, description="shear modulus, second Lamé constant")
     K: Modulus | None = doc(None, description="bulk modulus")
 
+    @classmethod
+    def bare(cls) -> bool:
+        """A pair is needed, though no single modulus is."""
+        return False
+
     @model_validator(mode="after")
     def pair(self) -> "Hencky":
         """One pair of moduli, no more and no less, with a positive bulk modulus."""

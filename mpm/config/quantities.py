@@ -43,8 +43,8 @@ class Quantity:
         for key, bound in (("exclusiveMinimum", self.above), ("minimum", self.least), ("maximum", self.most)):
             if math.isfinite(bound):
                 number[key] = bound
-        text = {"type": "string", "description": f'a number and a unit, like "1 {self.unit or "%"}"'}
-        return {"anyOf": [number, text], "description": f"{self.name} [{self.unit or '1'}]"}
+        text: dict[str, Any] = {"type": "string", "description": f'a number and a unit, like "1 {self.unit or "%"}"'}
+        return {"anyOf": [number, text], "description": self.name, "x-unit": self.unit or "1"}
 
     @property
     def wanted(self) -> str:

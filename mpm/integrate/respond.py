@@ -9,7 +9,7 @@ import math
 
 from mpm.heat.local import heat_locally, temperature, thermal_stress
 from mpm.jit import kernel, role
-from mpm.materials import NoFlow, flow, stress
+from mpm.materials import FLOW, NoFlow, flow, stress
 from mpm.outcome import INVERTED, OVERSTRETCHED, RETURN_MAP
 from mpm.state import Axisymmetric, Line, NoExchange, Plane, Surface, Volume
 from mpm.tensors import compose2, compose3, dilation1, dilation2, dilation3, eigen2, eigen3, push1, push2, push3
@@ -28,12 +28,21 @@ def respond(space, gradient, body, chunk, first, count, dt, next_dt, report):
 @role
 def flows(law):
     """Whether the elastic strain must be written back: a constant at compile time."""
-    return True
+    raise TypeError(f"no flow law {type(law).__name__}")
 
 
 @flows.register(NoFlow)
 def _(law):
     return False
+
+
+def flows_always(law):
+    return True
+
+
+for kind in FLOW:
+    if kind is not NoFlow:
+        flows.register(kind, flows_always)
 
 
 @kernel(inline=True)

@@ -13,6 +13,7 @@ from mpm.rigid.chebyshev import ChebyshevSteps
 from mpm.rigid.drive import Watch, drive
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.linear import LinearSteps
+from mpm.rigid.newton import NewtonSteps
 from mpm.rigid.nodes import interpolate
 from mpm.rigid.system import RigidBody, System, make_system
 from mpm.materials.roles import value
@@ -64,7 +65,7 @@ def choose(system: System, method: Method):
     linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant)
     if method.kind == "explicit" or (method.kind == "auto" and not linear):
         return ChebyshevSteps(system, method.tolerance)
-    return LinearSteps(system, method.tolerance, method.order)
+    return LinearSteps(system, method.tolerance, method.order) if linear else NewtonSteps(system, method.tolerance, method.order)
 
 
 def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None) -> RigidRun:

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from mpm.config.base import Kind
-from mpm.config.checks import check
+from mpm.config.checks import check, unread
 from mpm.config.condition import ConditionError
 from mpm.config.experiment import Experiment
 from mpm.config.explain import Finding, findings, problem
@@ -103,8 +102,14 @@ class Points:
 
     def __init__(self, experiment: Experiment, variation: Variation, root: Node):
         self.experiment, self.variation, self.root = experiment, variation, root
-        self.template = experiment.template()
+        paths = [parameter.path for parameter in variation.parameters()]
+        touched = {path[0] for path in paths} | ({"output"} if "time" in {path[0] for path in paths} else set())  # output.every may follow time.end
+        kept = [name for name in Experiment.model_fields if name not in touched]
+        self.template = {**experiment.template(), **{name: getattr(experiment, name) for name in kept if name not in ("sweep", "smoke")}}
+        self.known = {name: experiment.key_line(name) for name in kept}
+        self.checked = all(unread(parameter.path, parameter.slot) for parameter in variation.parameters())
         self.columns = {id(parameter): column for group in variation.groups for parameter, column in zip(group.parameters, columns(group), strict=True)}
+        self.base = experiment.resolved()
         self.found: list[Finding] = []
 
     def build(self) -> Cases:
@@ -140,7 +145,7 @@ class Points:
         varied = {parameter.path: value for parameter, value in pairs}
         values = {}
         for name, path in self.variation.names.items():
-            value = varied[path] if path in varied else at_path(self.template, path)
+            value = varied[path] if path in varied else at_path(self.base, path)
             values[name] = value if isinstance(value, float | int) else float("inf") if value == ".inf" else label(value)
         try:
             return not condition(values)
@@ -158,11 +163,11 @@ class Points:
         except ValidationError as error:
             self.blame(findings(error, ROOT), pairs)
             return None
-        if wrong := check(point):
+        if wrong := [] if self.checked else check(point):
             self.blame(wrong, pairs)
             return None
         point._source, point._path = self.experiment._source, self.experiment._path
-        return Case(index, flat, {parameter.spoken: value for parameter, value in pairs}, point, point.run_id)
+        return Case(index, flat, {parameter.spoken: value for parameter, value in pairs}, point, point.identify(self.known))
 
     def blame(self, wrong: list[Finding], pairs: list[tuple[Parameter, Any]]) -> None:
         """Tell what is wrong with a point where the sweep sets it."""
@@ -224,6 +229,3 @@ def even(parameter: Parameter, size: int) -> list[float]:
     if size > 1:
         values[-1] = parameter.high
     return values
-
-
-__all__ = ["Case", "Cases", "Coordinate", "Dimension", "Kind", "plan"]
