@@ -49,7 +49,7 @@ class Choice:
                 for word in allowed:
                     if word == value:
                         return word
-            raise problem("choice", f"expected one of {len(allowed)} words", list(allowed))
+            raise problem("choice", "none of the allowed values", list(allowed))
 
         return core_schema.no_info_plain_validator_function(validate, metadata={"pydantic_js_functions": [lambda schema, handler: {"enum": list(allowed)}]})
 

@@ -157,8 +157,11 @@ def surface(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         return
     name = experiment.bodies[item.of].material
     if name in experiment.materials and experiment.materials[name].heat is None:
-        key = next(key for key in EXCHANGES if getattr(item, key) is not None)
-        yield Finding(("surfaces", index, key), f"{name!r} has no heat law, so nothing can be exchanged", f"a heat section in materials.{name}", on_key=True)
+        for key in EXCHANGES:
+            if getattr(item, key) is not None:
+                yield Finding(
+                    ("surfaces", index, key), f"{name!r} has no heat law, so nothing can be exchanged", f"a heat section in materials.{name}", on_key=True
+                )
 
 
 def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
@@ -232,7 +235,11 @@ def observable(experiment: Any, index: int, name: str) -> Iterator[Finding]:
 
     path = ("output", "observables", index)
     if not observable_exists(name):
-        allowed = [word for word in OBSERVABLES if fits(word, experiment.grid.dimension)] + ["time_to.<probe>.<value>_degC", "time_to.<probe>.<value>_K"]
+        dimension = experiment.grid.dimension
+        allowed = [word for word in OBSERVABLES if dimension is MISSING or fits(word, dimension)] + [
+            "time_to.<probe>.<value>_degC",
+            "time_to.<probe>.<value>_K",
+        ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
     found = threshold(name)

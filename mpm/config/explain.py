@@ -29,6 +29,7 @@ class Finding:
     allowed: Any = ""
     suggestion: str = ""
     on_key: bool = False
+    missing: bool = False  # something is not there, which a base file might have
     given: Any = BAD  # BAD: show nothing
 
 
@@ -82,7 +83,7 @@ def finding(item: dict, slot: Slot, prefix: Path) -> Finding:
     here = slot.walk(location)
     if kind == "missing":
         wanted = here.quantity.wanted if here and here.quantity else listed(here.keys) if here and here.keys else (here.description if here else "")
-        return Finding(path, f"{location[-1]!r} is missing", wanted, on_key=True)
+        return Finding(path, f"{location[-1]!r} is missing", wanted, on_key=True, missing=True)
     if kind == "extra_forbidden":
         parent = slot.walk(location[:-1])
         keys = parent.keys if parent else []
@@ -103,6 +104,7 @@ def finding(item: dict, slot: Slot, prefix: Path) -> Finding:
         words = allowed if isinstance(allowed, list) else []
         word = at[0] if kind == "kind" and at else given
         suggestion = context["suggestion"] or near(word, words)
-        value = BAD if kind in ("kind", "kinds", "pair", "exchange") and not isinstance(given, str) and at else given
-        return Finding((*path, *at), context["message"], allowed, suggestion, on_key=kind in ("kind", "kinds") and bool(at), given=value if not at else BAD)
+        silent = at or kind in ("unit", "pair", "exchange")  # the message itself says what was given
+        named = bool(at) and kind in ("kind", "kinds", "axis") and not isinstance(at[-1], int)
+        return Finding((*path, *at), context["message"], allowed, suggestion, on_key=named, given=BAD if silent else given)
     return Finding(path, item["msg"][:1].lower() + item["msg"][1:], "", given=given)

@@ -35,9 +35,10 @@ def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None =
     if smoke and not wanted:
         found.append(root.origin.problem(root.line, root.column, "smoke", "the config has no smoke section", allowed="smoke: {path: value, ...}"))
     apply(full, (wanted if smoke else []) + given, found)
-    experiment, wrong = validate(full)
+    orphan = any(one.path == "extends" for one in found)
+    experiment, wrong = validate(full, orphan)
     found += wrong
-    if wanted and not smoke:  # the smoke form must be right too, although it is not wanted now
+    if wanted and not smoke and not orphan:  # the smoke form must be right too, although it is not wanted now
         trial = copy(root)
         apply(trial, wanted + given, found)
         found += validate(trial)[1]
@@ -170,8 +171,11 @@ def prune(root: Node) -> None:
         root.value.pop("sweep")
 
 
-def validate(root: Node) -> tuple[Experiment | None, list[Problem]]:
-    """The experiment of a tree of nodes, and what is wrong with it: types, sections together, sweep."""
+def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[Problem]]:
+    """The experiment of a tree of nodes, and what is wrong with it: types, sections together, sweep.
+
+    orphan   its base file cannot be read: what is missing may be there, so only what is wrong in itself is told
+    """
     raw = root.plain()
     found: list[Finding] = []
     experiment: Any = None
@@ -180,6 +184,8 @@ def validate(root: Node) -> tuple[Experiment | None, list[Problem]]:
     except ValidationError as error:
         found += findings(error, ROOT)
         whole = loose(ROOT, raw)
+    if orphan:
+        return None, problems(root, [finding for finding in found if not finding.missing])
     found += check(whole)
     sweep = whole.sweep
     if sweep is not None and sweep is not MISSING:

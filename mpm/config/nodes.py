@@ -104,21 +104,26 @@ class Builder:
         self.problems: list[Problem] = []
         self.stack: list[Node] = []
         self.pending: list[tuple[str | None, tuple[int, int]] | None] = []  # for each open mapping: the key that waits for its value
+        self.under: list[Any] = []  # for each open collection: its key in the one around it
         self.root: Node | None = None
 
     def report(self, line: int, column: int, message: str, **more: str) -> None:
-        path = ".".join(str(key) for key in self.path())
+        path = ".".join(str(key) for key in self.path()[:8])
         self.problems.append(self.origin.problem(line, column, path, message, **more))
 
     def path(self) -> list[Any]:
         """Keys from the root to where we are."""
-        keys = []
-        for depth, (node, waiting) in enumerate(zip(self.stack, self.pending, strict=True), 1):
-            if isinstance(node.value, list):
-                keys.append(len(node.value) - (depth < len(self.stack)))
-            elif waiting is not None and waiting[0] is not None:
-                keys.append(waiting[0])
-        return keys
+        here = self.here()
+        return [key for key in [*self.under[1:], here] if key is not None]
+
+    def here(self) -> Any:
+        """The key or index that the next value is for."""
+        if not self.stack:
+            return None
+        if isinstance(self.stack[-1].value, list):
+            return len(self.stack[-1].value)
+        waiting = self.pending[-1]
+        return waiting[0] if waiting else None
 
     def add(self, node: Node) -> None:
         """Put a finished scalar or a fresh collection where it belongs."""
@@ -162,6 +167,7 @@ class Builder:
         if kind in ("MappingEndEvent", "SequenceEndEvent"):
             self.stack.pop()
             self.pending.pop()
+            self.under.pop()
         return True
 
     def open(self, event: Any, kind: str, line: int, column: int) -> bool:
@@ -182,6 +188,7 @@ class Builder:
             self.report(line, column, f"more than {MOST_DEPTH} levels deep", allowed=f"at most {MOST_DEPTH} levels")
             return False
         node = Node({} if kind == "MappingStartEvent" else [], self.origin, line, column)
+        self.under.append(self.here())
         self.add(node)
         self.stack.append(node)
         self.pending.append(None)

@@ -40,15 +40,20 @@ def registry() -> Any:
     return pint.UnitRegistry()
 
 
+def article(noun: str) -> str:
+    """`a` or `an`."""
+    return "an" if noun[:1] in "aeiou" else "a"
+
+
 @functools.lru_cache(4096)
 def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
     """The number in `text` converted to `unit`; `difference` reads degC and degF as differences."""
     found = TEXT.fullmatch(text)
     if not found:
-        raise UnitError(f"{text!r} is not a {name}: it does not begin with a number")
+        raise UnitError(f"{text!r} is not {article(name)} {name}: it does not begin with a number")
     number, given = float(found[1]), found[2]
     if not given:
-        raise UnitError(f"{text!r} is text without a unit, not a {name}", suggestion=found[1])
+        raise UnitError(f"{text!r} is text without a unit, not {article(name)} {name}", suggestion=found[1])
     if not UNIT.fullmatch(given):
         raise UnitError(f"{given!r} is not a unit")
     if re.search(r"(\^|\*\*)[^*^]*\d\s*(\^|\*\*)", given):
@@ -63,8 +68,9 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
         source = units.parse_units(OFFSET[str(source)])
     target = units.parse_units(unit or "dimensionless")
     if source.dimensionality != target.dimensionality:
-        said = NAMES.get(str(source.dimensionality), str(source.dimensionality))
+        said = NAMES.get(str(source.dimensionality), "")
+        said = f"is {article(said)} {said}" if said else f"has the dimension {source.dimensionality}"
         scale = f'"{found[1]} deg{given}"' if given in ("C", "F") and unit == "K" else ""
-        raise UnitError(f"{text!r} has the dimension of a {said}, but a {name} is expected", suggestion=scale)
+        raise UnitError(f"{text!r} {said}, but {article(name)} {name} is expected", suggestion=scale)
     # 36 * 0.001 is not 0.036: rounding makes "36 mm" and 0.036 the same run
     return float(f"{units.Quantity(number, source).to(target).magnitude:.15g}")
