@@ -39,7 +39,7 @@ class Plain(Reporter):
     def start(self, total: int, done: int, jobs: int) -> None:
         self.total, self.done = total, done
         if not self.failures_only:
-            self.write(f"{total} points, {done} already there" + (f", {jobs} workers" if total > done else ""))
+            self.write(f"{total} point{'s' * (total != 1)}, {done} already there")
 
     def finished(self, label: str, line: dict, again: bool) -> None:
         self.done += not again
@@ -120,6 +120,6 @@ class Single:
         self.reporter.beat({"": fraction})
         return bool(self.stopped)
 
-    def finished(self, record: Any) -> None:
-        self.reporter.finished("", record.line, False)
+    def finished(self, name: str, record: Any) -> None:
+        self.reporter.finished(name, record.line, False)
         self.reporter.close()

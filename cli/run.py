@@ -35,7 +35,7 @@ def run(
         progress.reporter.close()
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "run.nc", seal(data, record.line))
-    progress.finished(record)
+    progress.finished(experiment.name, record)
     if as_json:
         document({"out": folder, "dataset": folder / "run.nc", **record.line, "status": STATUS[record.status], "finals": record.finals, "facts": record.facts})
     else:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from mpm.records.provenance import cores, now, source_hash, versions
+from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Points, Result, counts, exit_code
 from mpm.sweep.report import Reporter
@@ -139,16 +139,12 @@ def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
 
 def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000) -> tuple[bytes, Any]:
     """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions) and its record."""
-    import importlib
-
-    from mpm.records import point
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
+    from mpm.sweep.worker import compute
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
-    started = now()
-    run = importlib.import_module(engine.RUNNER).run_point(case.experiment, beat)
-    record = point.from_run(case.run_id, run, source=source_hash(), started=started, finished=now(), config=case.experiment.resolved())
+    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     about = {
         "title": experiment.title,

@@ -71,7 +71,7 @@ def values(x: np.ndarray, y: np.ndarray, rtol: float, atol: float) -> str:
         return ""
     gap = np.where(same, 0.0, np.abs(np.nan_to_num(x.astype(float)) - np.nan_to_num(y.astype(float))))
     at = np.unravel_index(np.argmax(np.where(same, -1.0, gap)), x.shape)
-    return f"{(~same).sum()} of {x.size} differ, most at {tuple(int(i) for i in at)}: {x[at]:.17g} and {y[at]:.17g}"
+    return f"{(~same).sum()} of {x.size} differ, most at {tuple(int(i) for i in at)}: {x[at].item()!r} and {y[at].item()!r}"
 
 
 def equal(x: Any, y: Any) -> bool:

@@ -1,5 +1,6 @@
 """Status: what a sweep's folder holds, without opening a single result (each point's seal carries its summary)."""
 
+import re
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,7 @@ def reason(line: dict) -> str:
     """What failures are grouped by: the status and the kind of outcome, or the text up to its first number."""
     if line["outcome"]:
         return f"{STATUS[line['status']]}: {line['outcome'].replace('_', ' ')}"
-    text = line["error"]
+    text = re.sub(r" \([\w.]+:\d+\)$", "", line["error"])
     cut = next((i for i, letter in enumerate(text) if letter.isdigit()), len(text))
     return text[:cut].rstrip(" (=,") or text
 

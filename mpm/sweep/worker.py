@@ -25,15 +25,10 @@ def perform(task: Task, runner: str, stopped: Callable[[float, float], str]) -> 
     """Run a point, save its record, and return the message that tells it.
 
     `stopped(fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
-    A point that raises is a record with status `failed`.
     """
     from mpm.config import load
-    from mpm.records import point, variables
-    from mpm.records.provenance import now, source_hash
     from mpm.sweep.store import Store
 
-    calls: dict[str, Any] = {"attempts": task.attempt, "source": source_hash(), "started": now(), "config": task.config}
-    began = time.perf_counter()
     why = ""
 
     def beat(fraction: float, when: float) -> bool:
@@ -41,19 +36,28 @@ def perform(task: Task, runner: str, stopped: Callable[[float, float], str]) -> 
         why = why or stopped(fraction, when)
         return bool(why)
 
-    try:
-        run = importlib.import_module(runner).run_point(load(task.config), beat)
-        if why == "cancel" and not run.outcome.ok:
-            return {"is": "cancelled", "run_id": task.run_id}
-        record = point.from_run(task.run_id, run, finished=now(), **calls)
-    except Exception as error:  # whatever the model raises is this point's failure, not the sweep's
-        text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
-        record = point.Record(task.run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
+    record = compute(task.run_id, lambda: load(task.config), runner, beat, attempts=task.attempt, config=task.config)
+    if why == "cancel" and record.outcome == "budget":
+        return {"is": "cancelled", "run_id": task.run_id}
     try:
         Store(task.out).save(record)
     except OSError as error:
         return {"is": "unwritten", "run_id": task.run_id, "why": f"{error.filename}: {error.strerror}"}
     return {"is": "done", "run_id": task.run_id, "line": record.line}
+
+
+def compute(run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, **calls: Any) -> Any:
+    """The record of a point. Whatever the model raises is this point's failure, not the sweep's: status `failed`, with the place but no values."""
+    from mpm.records import point, variables
+    from mpm.records.provenance import now, source_hash
+
+    calls |= {"source": source_hash(), "started": now()}
+    began = time.perf_counter()
+    try:
+        return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat), **calls, finished=now())
+    except Exception as error:
+        text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
+        return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
 
 
 def first_line(error: BaseException) -> str:

@@ -58,7 +58,7 @@ def run_point(experiment, beat=None):
     ending = Outcome("completed")
     if kappa == DIVERGES:
         times, ending = times[: len(times) // 2], outcome(INVERTED, particle=812, time=0.0134, step=2680)
-    if kappa in (SLOW, BRIEF):
+    if kappa == SLOW or kappa >= BRIEF:
         for step in range(3000 if kappa == SLOW else 100):
             time.sleep(0.01)
             if beat(step / 3000, step * 0.01):
