@@ -1,8 +1,10 @@
 """The loop over steps, the same for every method: sizes from the error estimate, outputs and crossings from dense output.
 
-A method has   attempt(dt) -> error over tolerance (nan or inf: rejected),  accept(),  dense(s) -> (basis (S, m), columns (m, N), exchanged (S,)),
-               temperature(state) -> theta - zero,  heat(state) [J],  first_size(end),  power (error ~ dt^power),  replan (a new size is costly),
-               floor (steps this short are taken whatever their error: the cell resolves nothing faster)
+A method has
+    attempt(dt) -> error over tolerance (nan or inf: rejected)      accept()
+    dense(s) -> (basis (S, m), columns (m, N), exchanged (S,))      temperature(state) -> theta - zero      heat(state) [J]
+    state, first (state at the start), first_size(end), power (error ~ dt^power), replan (a new size is costly), radius [1/s] (0 without an explicit limit)
+    floor (steps this short are taken whatever their error: the cell resolves nothing faster)
 state(t + s dt) = before + basis @ columns is the method's own variable: temperature, or specific enthalpy.
 """
 
@@ -26,6 +28,7 @@ class Watch:
     probes: tuple[np.ndarray, np.ndarray]
     thresholds: list[tuple[int, float]]
     sight: tuple[np.ndarray, np.ndarray]
+    shots: tuple[np.ndarray, np.ndarray, np.ndarray]  # times, and nodes and values of the points
     stop: object = None
 
 
@@ -39,6 +42,7 @@ class Trace:
     most: list = field(default_factory=list)
     heat: list = field(default_factory=list)
     exchanged: list = field(default_factory=list)
+    shots: list = field(default_factory=list)
     crossings: list = field(default_factory=list)
     steps: int = 0
     rejected: int = 0
@@ -81,6 +85,8 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
     ahead = np.asarray(watch.times, dtype=float)
     first = int(np.searchsorted(ahead, 0.0, side="right"))
     record(trace, watch, method, [state] * first, [0.0] * first, weight)
+    shown = int(np.searchsorted(watch.shots[0], 0.0, side="right"))
+    trace.shots += [interpolate(*watch.shots[1:], method.temperature(state))] * shown
     seen = interpolate(*watch.probes, method.temperature(state))
     for k, (probe, level) in enumerate(watch.thresholds):
         if seen[probe] == level:
@@ -109,6 +115,11 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
             basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
             record(trace, watch, method, before + basis @ columns, exchanged, weight)
             first = last
+        last = int(np.searchsorted(watch.shots[0], new * (1 + 1e-14), side="right"))
+        if last > shown:
+            basis, columns, _ = method.dense((np.minimum(watch.shots[0][shown:last], new) - t) / dt)
+            trace.shots += [interpolate(*watch.shots[1:], method.temperature(shot)) for shot in before + basis @ columns]
+            shown = last
         now = interpolate(*watch.probes, method.temperature(state))
         for k, (probe, level) in enumerate(watch.thresholds):
             if math.isnan(trace.crossings[k]) and (seen[probe] - level) * (now[probe] - level) <= 0:

@@ -1,6 +1,5 @@
 """Solve the heat equation in rigid bodies: choose a method, run each body, put the pieces together."""
 
-import math
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mpm.materials.laws import Constant
+from mpm.materials.roles import enthalpy, value
 from mpm.outcome import COMPLETED, Outcome, outcome
 from mpm.rigid.chebyshev import ChebyshevSteps
 from mpm.rigid.drive import Watch, drive
@@ -15,8 +15,10 @@ from mpm.rigid.geometry import evaluated
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
 from mpm.rigid.nodes import interpolate
-from mpm.rigid.system import RigidBody, System, make_system
-from mpm.materials.roles import value
+from mpm.rigid.system import System, make_system
+
+STEPS, FACTORS = 100, 400  # of a run through a latent front at the default tolerance: steps, and factorisations of Newton
+LARGE = 2e11  # operations of one factorisation that nobody waits for
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,9 @@ class RigidRun:
     unknowns: int
     wall_time: float
     facts: dict
-    bodies: list[tuple[System, Any, np.ndarray]] = field(repr=False, default_factory=list)
+    limits: dict[str, float]
+    snapshots: np.ndarray = field(repr=False)
+    bodies: list[tuple[System, Any, tuple]] = field(repr=False)
 
     def sample(self, x: np.ndarray, body: int | None = None) -> np.ndarray:
         """Temperature [K] at points x (P, d) at the last time; nan outside every body, unless one is named: then its splines go on."""
@@ -60,21 +64,31 @@ class RigidRun:
         return geometry.x, geometry.w
 
 
-def choose(system: System, method: Method):
-    """The method's object for one body."""
+def choose(system: System, method: Method, end: float):
+    """The method's object for one body. `auto`: implicit where kappa and alpha are constant, else what costs least by a count of operations;
+    where a band would be too large, explicit."""
     linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant)
-    if method.kind == "explicit" or (method.kind == "auto" and not linear):
-        return ChebyshevSteps(system, method.tolerance)
-    return LinearSteps(system, method.tolerance, method.order) if linear else NewtonSteps(system, method.tolerance, method.order)
+    implicit = LinearSteps if linear else NewtonSteps
+    if method.kind == "implicit":
+        return implicit(system, method.tolerance, method.order)
+    diff, nodes = system.geometry.nodes.diff, float(system.geometry.nodes.size)
+    band = float(diff[-1]) + 1
+    if method.kind == "auto" and linear and nodes * band**2 < LARGE:
+        return implicit(system, method.tolerance, method.order)
+    explicit = ChebyshevSteps(system, method.tolerance)
+    evaluations = STEPS * np.sqrt(1 + 1.54 * explicit.radius * end / STEPS)
+    cheaper = evaluations * nodes * (4 * len(diff) + 40) < FACTORS * nodes * band * (band + 8)
+    return explicit if method.kind == "explicit" or cheaper else implicit(system, method.tolerance, method.order)
 
 
-def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None) -> RigidRun:
-    """Heat in rigid bodies from 0 to `end` [s].
+def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None):
+    """Heat in rigid bodies from 0 to `end` [s]: a RigidRun.
 
     bodies      RigidBody each; they do not touch, and each has its own nodes
     space       1, 2, "axisymmetric" or 3;  h: cell [m];  origin: place of node 0 (default zero): shift it to shift the grid against the bodies
     times       output times [s], any; probes {name: x}, thresholds [(probe name, temperature [K])]
     method      Method; stop(fraction, time) -> True ends the run with outcome `budget`
+    snapshots   (times (S,), points (P, d)): temperatures there in `RigidRun.snapshots`, nan outside the bodies
     reference   temperature at which heat content counts as zero [K]; the first body's start unless given
     Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric).
     """
@@ -88,32 +102,36 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     places = np.array([np.atleast_1d(x) for x in probes.values()], dtype=float).reshape(-1, dimension)
     owner = np.argmin([body.shape.distance(places) for body in bodies], axis=0) if len(places) else np.zeros(0, dtype=int)
     names, parts, run_bodies = list(probes), [], []
+    shot_times, points = (np.asarray(a, dtype=float) for a in snapshots or (np.zeros(0), np.zeros((0, dimension))))
+    seen = np.full((len(shot_times), len(points)), np.nan)
     for k, body in enumerate(bodies):
         system = make_system(body, axisymmetric, h, origin)
-        steps = choose(system, method)
+        steps = choose(system, method, float(end))
         mine = np.flatnonzero(owner == k)
         levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]
-        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, stop)
+        here = np.flatnonzero(body.shape.distance(points) <= 1e-9 * h)
+        shots = (shot_times, *evaluated(system.geometry.nodes, points[here]))
+        beat = None if stop is None else (lambda part, t, k=k: stop((k + part) / len(bodies), t))
+        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat)
         trace = drive(steps, watch, float(end), system.geometry.volume, method.step)
         parts.append((system, steps, trace, mine))
+        seen[: len(trace.shots), here] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(here))
         run_bodies.append((system, steps, (body.shape, trace.final)))
         if trace.code != COMPLETED:
             break
-    return _gather(parts, run_bodies, times, names, thresholds, reference, start)
+    return _gather(parts, run_bodies, seen, times, names, thresholds, reference, start)
 
 
 def _content(system: System, reference: float) -> float:
     """Heat of the body at `zero` above that at `reference` [J]."""
-    from mpm.materials.roles import enthalpy
-
     return system.density * float(system.geometry.volume.sum()) * (enthalpy(system.alpha, system.zero) - enthalpy(system.alpha, reference))
 
 
-def _gather(parts, run_bodies, times, names, thresholds, reference, start) -> RigidRun:
+def _gather(parts, run_bodies, snapshots, times, names, thresholds, reference, start) -> RigidRun:
     shown = min(len(trace.heat) for _, _, trace, _ in parts)
     series = {name: np.full(shown, np.nan) for name in (f"temperature.{n}" for n in names)}
     series |= {name: np.zeros(shown) for name in ("temperature.mean", "heat", "heat_exchanged", "heat_ledger")}
-    least, most, capacity, crossings, last = [], [], 0.0, {}, 0.0
+    least, most, capacity, crossings = [], [], 0.0, {}
     for system, steps, trace, mine in parts:
         seen = np.array(trace.probes).reshape(len(trace.heat), len(mine))[:shown] + system.zero
         for column, k in enumerate(mine):
@@ -133,7 +151,15 @@ def _gather(parts, run_bodies, times, names, thresholds, reference, start) -> Ri
     series["temperature.min"], series["temperature.max"] = np.min(least, axis=0), np.max(most, axis=0)
     worst = next((trace for _, _, trace, _ in parts if trace.code != COMPLETED), parts[-1][2])
     steps, rejected = sum(p[2].steps for p in parts), sum(p[2].rejected for p in parts)
-    facts = {"rigid_method": [type(p[1]).__name__ for p in parts], "smallest_step": min(p[2].smallest for p in parts), "largest_step": max(p[2].largest for p in parts)}
+    facts = {
+        "heat_method": sorted({type(p[1]).__name__ for p in parts}),
+        "heat_steps": steps,
+        "heat_steps_rejected": rejected,
+        "smallest_step": min(p[2].smallest for p in parts),
+        "largest_step": max(p[2].largest for p in parts),
+        "beta_h_over_kappa": max(p[0].stiff for p in parts),
+    }
+    limits = {"euler": min(2 / p[1].radius for p in parts if p[1].radius > 0)} if any(p[1].radius > 0 for p in parts) else {}
     unknowns = sum(int(p[0].geometry.active.sum()) for p in parts)
     result = outcome(worst.code, time=None if worst.code == COMPLETED else worst.time, step=worst.steps if worst.code != COMPLETED else -1)
-    return RigidRun(result, times[:shown], series, crossings, steps, rejected, unknowns, time.perf_counter() - start, facts, run_bodies)
+    return RigidRun(result, times[:shown], series, crossings, steps, rejected, unknowns, time.perf_counter() - start, facts, limits, snapshots, run_bodies)

@@ -73,5 +73,19 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin) -> System
             supply += beta * (outside - zero) * area
     span = max(max(data) - min(data), 1e-9 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
-    return System(shaped, float(body.density), kappa, alpha, float(body.temperature), float(zero), exchange, facing, supply, float(supply.sum()), span,
-                  min(data), max(data), stiff)
+    return System(
+        shaped,
+        float(body.density),
+        kappa,
+        alpha,
+        float(body.temperature),
+        float(zero),
+        exchange,
+        facing,
+        supply,
+        float(supply.sum()),
+        span,
+        min(data),
+        max(data),
+        stiff,
+    )
