@@ -44,12 +44,17 @@ class Experiment(Model):
     _derived: frozenset[str] = PrivateAttr(frozenset())
     _tree: Any = PrivateAttr(None)  # nodes with places, for errors of points that are planned later
 
+    def __eq__(self, other: object) -> bool:
+        """The same data; where it was read from is no difference."""
+        return self.__dict__ == other.__dict__ if isinstance(other, Experiment) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
     @model_validator(mode="after")
     def derived(self) -> "Experiment":
         """Defaults that follow from other sections: the cadence of the series, the zeros of the offset."""
-        object.__setattr__(
-            self, "_derived", frozenset(key for key, absent in (("every", self.output.every is None), ("offset", not self.method.offset)) if absent)
-        )
+        absent = (("every", self.output.every is None), ("offset", not self.method.offset))
+        self._derived = frozenset(name for name, derived in absent if derived)
         if self.output.every is None:
             self.__dict__["output"] = self.output.model_copy(update={"every": self.time.end / 100})
         if not self.method.offset:

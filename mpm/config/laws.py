@@ -70,6 +70,16 @@ class Logistic(Kind):
     width: TemperatureDifference = doc(description="e-folding width of the step")
 
 
+def of_unit(base: type[Kind], quantity: Quantity, /, **fields: Any) -> type[Kind]:
+    """A law's class for one quantity; a name of this module, so that experiments can be sent to other processes."""
+    name = base.__name__ + "".join(letter for letter in quantity.name.title() if letter.isalpha())
+    made = create_model(name, __base__=base, __module__=__name__, **fields)
+    if name in globals():
+        raise ValueError(f"two parameters are called {quantity.name!r}")
+    globals()[name] = made
+    return made
+
+
 class Law(Menu):
     """Annotation of a parameter that is a number or a function of temperature; every value in it has the parameter's unit and bounds."""
 
@@ -77,11 +87,10 @@ class Law(Menu):
         value = Annotated[float, quantity]
         # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
         area = Annotated[float, Quantity(f"{quantity.unit}*K" if quantity.unit else "K", f"{quantity.name} times kelvin", least=0, difference=True)]
-        tag = quantity.name.title().replace(" ", "").replace("-", "")
-        self.constant = create_model(f"Constant{tag}", __base__=Constant, value=(value, ...))
-        table = create_model(f"Table{tag}", __base__=Table, value=(tuple[value, ...], ...))
-        bump = create_model(f"Bump{tag}", __base__=Bump, base=(value, ...), heat=(area, ...))
-        logistic = create_model(f"Logistic{tag}", __base__=Logistic, low=(value, ...), high=(value, ...))
+        self.constant = of_unit(Constant, quantity, value=(value, ...))
+        table = of_unit(Table, quantity, value=(tuple[value, ...], ...))
+        bump = of_unit(Bump, quantity, base=(value, ...), heat=(area, ...))
+        logistic = of_unit(Logistic, quantity, low=(value, ...), high=(value, ...))
         super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic)
         self.quantity = quantity
 

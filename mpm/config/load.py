@@ -161,7 +161,7 @@ def prune(root: Node) -> None:
     for form in ("zip", "points"):
         if (entries := sweep.child(form)) is not None and isinstance(entries.value, list):
             entries.value[:] = [entry for entry in entries.value if entry.value]
-    for kind, design in mapping(sweep.child("sample").value if sweep.child("sample") else None).items():
+    for kind, design in list(mapping(sweep.child("sample").value if sweep.child("sample") else None).items()):
         if (ranges := design.child("ranges")) is not None and not ranges.value:
             sweep.value["sample"].value.pop(kind)
     for form in ("axes", "zip", "points", "sample"):

@@ -36,7 +36,7 @@ class Names:
                 continue
             self.slots[path] = slot
             forms = [tuple(map(str, path))]
-            if path[0] == "surfaces" and path[1] in called:
+            if path[0] == "surfaces" and path[1:2] and path[1] in called:
                 forms.append(("surfaces", called[path[1]], *map(str, path[2:])))
             self.spoken[path] = ".".join(forms[-1])
             for form in forms:

@@ -1,6 +1,6 @@
 """Every broken config gives exactly the problems that its last lines expect: file, line, column, path, message, what is allowed, suggestion.
 
-    # expect [file:]line:column path | message | allowed (a beginning, if it ends in ...) | suggestion
+# expect [file:]line:column path | message | allowed (a beginning, if it ends in ...) | suggestion
 """
 
 import re
@@ -13,7 +13,9 @@ from mpm.sweep.cases import plan
 
 ROOT = Path(__file__).parent.parent / "configs_broken"
 FILES = sorted(ROOT.glob("*.yaml"))
-EXPECT = re.compile(r"# expect (?:(?P<file>[\w/]+\.yaml):)?(?P<line>\d+):(?P<column>\d+) (?P<path>.*?) \| (?P<message>.*?) \|(?P<allowed>.*?)\|(?P<suggestion>.*)")
+EXPECT = re.compile(
+    r"# expect (?:(?P<file>[\w/]+\.yaml):)?(?P<line>\d+):(?P<column>\d+) (?P<path>.*?) \| (?P<message>.*?) \|(?P<allowed>.*?)\|(?P<suggestion>.*)"
+)
 
 
 def expected(file: Path) -> list[tuple]:
