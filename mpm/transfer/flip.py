@@ -43,12 +43,12 @@ def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
     massless = np.zeros_like(chunk.m)
     slope, tensor = impulse_parts(gradient, chunk)
-    scatter(space, gradient, x, first, Chunk(massless, chunk.f, slope, tensor, chunk.v, chunk.C, chunk.L, chunk.f, chunk.S), count, force, box)
+    scatter(space, gradient, x, first, Chunk(massless, chunk.f, slope, tensor, chunk.v, chunk.C, chunk.L, chunk.f, chunk.S, chunk.e), count, force, box)
 
 
 @collect.register(Flip)
 def _(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
-    gather(space, gradient, x, first, Chunk(chunk.m, chunk.a, chunk.A, chunk.G, change, chunk.C, chunk.L, chunk.f, chunk.S), count, force)
+    gather(space, gradient, x, first, Chunk(chunk.m, chunk.a, chunk.A, chunk.G, change, chunk.C, chunk.L, chunk.f, chunk.S, chunk.e), count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 
 

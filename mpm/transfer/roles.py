@@ -29,6 +29,7 @@ class Chunk(NamedTuple):
     L: np.ndarray  # (D, D, n) gathered gradient; the slope itself with the MLS gradient
     f: np.ndarray  # (D, n) impulse that acts on w (hoop stress)
     S: np.ndarray  # (D, D, n) impulse that acts on grad(w) (stress), scaled so that with the MLS gradient it adds to the slope
+    e: np.ndarray  # (9, n) trial strain tensor, then its values and two axes: a loop over particles of its own vectorises
 
 
 @role
@@ -104,7 +105,8 @@ def new_chunk(D, like):
     def tensor():
         return np.zeros((D, D, CHUNK), like.dtype)
 
-    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), vector(), tensor(), tensor(), vector(), tensor())
+    work = np.zeros((9, CHUNK), like.dtype)
+    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), vector(), tensor(), tensor(), vector(), tensor(), work)
 
 
 @kernel(inline=True)
