@@ -240,7 +240,7 @@ def increment3(L, p, dt):
 
 @kernel
 def eigen_chunk(e, count):
-    """Values and first two axes of `count` tensors, in place: a loop of its own over contiguous components, which vectorises (65 ns a tensor instead of 235)."""
+    """Values and first two axes of `count` tensors, in place: a loop of its own over contiguous components: it vectorises (65 ns a tensor, not 235)."""
     for p in range(count):
         l1, l2, l3, ax, ay, az, bx, by, bz, _, _, _ = eigen3(e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p])
         e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p], e[6, p], e[7, p], e[8, p] = l1, l2, l3, ax, ay, az, bx, by, bz
