@@ -1,5 +1,29 @@
 """Sweep: from an experiment to its points, over processes, to one dataset.
 
-cases     `plan`: axes, zips, samples and lists of points -> cases with an id that depends on their content alone
-designs   Sobol, Latin hypercube, Halton and uniform samples
+cases      `plan`: axes, zips, samples and lists of points -> cases with an id that depends on their content alone
+designs    Sobol, Latin hypercube, Halton and uniform samples
+api        what the shell and Python share: `execute`, `run_one`, `sweep`, `run`
+engine     hands out points, hears of them, retries, keeps the clock; knows no processes and no disk
+executors  where points run: the interface, and `Serial`; `processes` has workers on this machine, `worker` is their other side
+store      the folder of a sweep: points by id, what it holds, one writer; `collect` makes sweep.nc of it (`align`, `coordinates`)
+status, compare, outlook   what is there; same or not; what would be done
+
+The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.
 """
+
+import sys
+import types
+from typing import Any
+
+
+class _Room(types.ModuleType):
+    """A package that is also a function: importing any module of the package puts the package at `mpm.sweep`, over a function of that name."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """See `mpm.sweep.api.sweep`."""
+        from mpm.sweep.api import sweep
+
+        return sweep(*args, **kwargs)
+
+
+sys.modules[__name__].__class__ = _Room

@@ -94,7 +94,8 @@ def run_engine(supervisor: Engine, options: Options) -> None:
         if options.jobs == 0:
             supervisor.run(Serial(options.runner, supervisor.heed))
             return
-        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if len(supervisor.due) > 1 and options.jobs > 1 else None
+        ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
+        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead else None
         supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first))
 
 

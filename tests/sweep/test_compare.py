@@ -1,0 +1,40 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from mpm.sweep.compare import compare, values
+from mpm.sweep.store import Refused
+
+
+@pytest.mark.parametrize("x, y, rtol, atol, said", [
+    ([1.0, np.nan], [1.0, np.nan], 0, 0, ""),
+    ([1.0, 2.0], [1.0, 2.0 + 1e-12], 0, 0, "1 of 2 differ, most at (1,): 2.0 and 2.000000000001"),
+    ([1.0, 2.0], [1.0, 2.0 + 1e-12], 1e-9, 0, ""),
+    ([0.0], [1e-9], 1e-3, 0, "1 of 1 differ, most at (0,): 0.0 and 1e-09"),
+    ([0.0], [1e-9], 0, 1e-8, ""),
+    ([1.0], [np.nan], 1, 1, "1 of 1 differ, most at (0,): 1.0 and nan"),
+    (["a", "b"], ["a", "c"], 0, 0, "1 of 2 differ, first b and c"),
+    ([np.inf], [np.inf], 0, 0, ""),
+])  # fmt: skip
+def test_values(x, y, rtol, atol, said):
+    assert values(np.array(x), np.array(y), rtol, atol) == said
+
+
+def test_what_counts_and_what_does_not(tmp_path):
+    def write(name, **more):
+        data = {"temperature_mean": ("kappa", [1.0, 2.0]), "wall_time": ("kappa", [more.pop("wall", 0.1)] * 2)} | more.pop("also", {})
+        xr.Dataset(data, {"kappa": [0.2, 0.5]}, {"title": "a", "started": "now"} | more).to_netcdf(tmp_path / name, engine="h5netcdf")
+        return tmp_path / name
+
+    one = write("one.nc")
+    assert compare(one, write("two.nc", wall=0.3, started="then")) == []
+    assert compare(one, write("two.nc", title="b")) == ["attribute title: a and b"]
+    assert compare(one, write("two.nc", also={"extra": ("kappa", [0, 0])})) == ["/extra: only in the second"]
+    assert compare(write("three.nc", also={"extra": ("kappa", [0, 0])}), one) == ["/extra: only in the first"]
+
+
+def test_nothing_to_compare(tmp_path):
+    with pytest.raises(Refused, match=r"neither sweep\.nc nor run\.nc"):
+        compare(tmp_path, tmp_path)
+    with pytest.raises(Refused, match="does not exist"):
+        compare(tmp_path / "a", tmp_path)
