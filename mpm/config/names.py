@@ -5,6 +5,7 @@ from typing import Any
 
 from mpm.config.base import Kind, Model
 from mpm.config.experiment import Experiment
+from mpm.config.laws import Constant
 from mpm.config.problems import near
 from mpm.config.slots import Path, Slot, leaves
 
@@ -66,7 +67,9 @@ class Names:
         if parts[0] in NOT_VARIED:
             return None
         slot, value, path = ROOT, self.experiment, []
-        for part in parts:
+        for index, part in enumerate(parts):
+            if part == "constant" and isinstance(value, Constant) and index == len(parts) - 1:
+                break  # kappa.constant is kappa
             key: Any = int(part) if part.isdigit() and isinstance(value, tuple) and int(part) < len(value) else part
             slot = slot.step(key) if slot else None
             value = below(value, key)
