@@ -80,6 +80,8 @@ def put(root: Node, path: Path, node: Node, slot: Slot) -> None:
             below = Node({}, node.origin, node.line, node.column)
         else:
             below = Node(type(below.value)(below.value), below.origin, below.line, below.column, dict(below.keys))
+        if isinstance(below.value, list) != isinstance(following, int):
+            return  # a list where a mapping should be, or the reverse: told when the tree is validated
         place(here, key, below)
         here, slot = below, under
     if node.value is None and isinstance(here.value, dict):
