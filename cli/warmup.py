@@ -6,17 +6,21 @@ from typing import Annotated
 import typer
 from mpm_cli.talk import say
 
+Configs = Annotated[list[Path] | None, typer.Argument(metavar="[CONFIG...]", help="What to compile for.  [default: the usual scenes]", show_default=False)]
 
-def warmup(configs: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Configs whose kernels are compiled.", show_default=False)]) -> None:
+
+def warmup(configs: Configs = None) -> None:
     """Compile now what configs need."""
+    import importlib
     import time
 
-    from mpm.runner import warm
-
     from mpm.config import load
+    from mpm.sweep import engine
+    from mpm.sweep.warming import scenes
 
-    experiments = [(config, load(config)) for config in configs]
-    for config, experiment in experiments:
+    experiments = {str(config): load(config) for config in configs} if configs else {name: load(scene) for name, scene in scenes().items()}
+    runner = importlib.import_module(engine.RUNNER)
+    for name, experiment in experiments.items():
         began = time.monotonic()
-        warm(experiment)
-        say(f"{config}: {time.monotonic() - began:.1f} s")
+        runner.warm(experiment)
+        say(f"{name}: {time.monotonic() - began:.1f} s")

@@ -22,6 +22,7 @@ from mpm.sweep.report import Reporter, label
 from mpm.sweep.store import Store
 
 POLL = 0.2  # s
+COLLECT = 30.0  # least seconds between two datasets while running; 20 times the cost of one, if that is more
 GRACE = 2.0  # s that a point over its time has to stop by itself
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
 RUNNER = "mpm.runner"  # the module that computes: run_point, warm, estimate
@@ -219,7 +220,7 @@ class Engine:
                 self.asked[run_id] = math.inf
                 self.executor.kill(run_id)
         self.reporter.beat({run_id: self.fractions.get(run_id, 0.0) for run_id in self.running})
-        if clock - self.collected > max(30.0, 20 * self.cost) and self.ran:
+        if clock - self.collected > max(COLLECT, 20 * self.cost) and self.ran:
             self.partial()
             self.collected = time.monotonic()
             self.cost = self.collected - clock

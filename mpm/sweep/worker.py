@@ -106,11 +106,11 @@ class Worker:
                 self.orders.put(order)
 
     def live(self) -> None:
-        """Import, then obey until told to quit."""
+        """Import (the runner may list in NEEDS what it would else import under the first point), then obey until told to quit."""
         threading.Thread(target=self.listen, daemon=True).start()
         runner = importlib.import_module(self.runner)
-        importlib.import_module("mpm.records.point")
-        importlib.import_module("h5py")
+        for module in ("mpm.records.point", "h5py", *getattr(runner, "NEEDS", ())):
+            importlib.import_module(module)
         config = importlib.import_module("mpm.config")
         self.tell({"is": "ready"})
         while (order := self.orders.get())["do"] != "quit":

@@ -145,6 +145,13 @@ def test_collect_and_compare(mpm, write, tmp_path):
     assert mpm("compare", "a", "nowhere")[0] == 2
 
 
+def test_warmup(mpm, write):
+    code, out, _ = mpm("warmup", write([0.2]))
+    assert code == 0 and "slab.yaml: 0.0 s" in out
+    code, out, _ = mpm("warmup")
+    assert code == 0 and "thermo-viscoplastic, plane strain: 0.0 s" in out and len(out.splitlines()) == 5
+
+
 def test_plot_schema_info(mpm, write, tmp_path):
     assert mpm("plot", ".", "curve", "-o", "x.svg") == (0, "x.svg\n", "") and Path("x.svg").read_bytes() == b". curve"
     assert "properties" in json.loads(mpm("schema")[1])

@@ -245,6 +245,39 @@ def test_ctrl_c_finishes_what_runs(config, tmp_path, marks):
     assert process.returncode == 130 and status[0] == 0 and 6 in status
 
 
+def test_a_dataset_of_what_is_there_while_running(config, tmp_path, monkeypatch):
+    monkeypatch.setattr("mpm.sweep.engine.COLLECT", 0.0)
+    seen = []
+
+    class Eyes(Reporter):
+        def beat(self, running):
+            if (tmp_path / "sweep.nc").exists():
+                seen.append(tree_of(tmp_path / "sweep.nc").status.values.tolist())
+
+    execute(load(config([0.2, 0.5, 1.0])), tmp_path, Options(jobs=0, runner="fake_runner"), Eyes())
+    assert [0, 6, 6] in seen
+
+
+def test_killed_again_and_again_loses_nothing_that_finished(config, tmp_path, marks):
+    points = config([round(0.1 * k, 1) for k in range(1, 41)])
+    go(points, tmp_path / "whole")
+    done = 0
+    for wait in (0.0, 0.03, 0.1):
+        process = start(points, tmp_path / "out", lambda done=done: marks()[40 + done :])
+        time.sleep(wait)
+        process.kill()
+        process.communicate(timeout=20)
+        end = time.monotonic() + 2
+        while not all(gone(int(row[-1])) for row in marks()[40:]) and time.monotonic() < end:
+            time.sleep(0.02)
+        lines, damaged = Store(tmp_path / "out").lines([path.stem for path in (tmp_path / "out").glob("points/*/*.nc")])
+        assert not damaged and all(line["status"] == 0 for line in lines.values())
+        done = len(marks()) - 40
+    kept = len(lines)
+    assert go(points, tmp_path / "out", jobs=2).ran == 40 - kept
+    assert compare(tmp_path / "whole", tmp_path / "out") == []
+
+
 def test_two_sweeps_on_one_folder(config, tmp_path, marks):
     process = start(config([fake.SLOW, fake.HANGS]), tmp_path / "out", marks)
     with pytest.raises(Refused, match=f"in use by process {process.pid} on"):
