@@ -1,0 +1,94 @@
+"""A rigid scene from a validated experiment, and its Run: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid)."""
+
+import time
+
+import numpy as np
+
+from mpm.scene.build import SceneError, law, output_times, watch
+from mpm.scene.shapes import cut_quadrature, shape
+from mpm.state import Run
+
+
+def rigid_bodies(experiment) -> list:
+    """The bodies of a rigid scene; SceneError for one that has nothing to do."""
+    from mpm.rigid import RigidBody
+    bodies = []
+    for name, body in experiment.bodies.items():
+        material = experiment.materials[body.material]
+        if material.heat is None:
+            raise SceneError(f"materials.{body.material} has neither `elastic` nor `heat`: nothing would happen in {name}")
+        surfaces = tuple((s.side, s.convection.beta, s.convection.outside) for s in experiment.surfaces if s.of == name and s.convection is not None)
+        outline = shape(body.shape, experiment.grid.dimension)
+        bodies.append(RigidBody(outline, body.temperature, material.density, law(material.heat.kappa), law(material.heat.alpha), surfaces))
+    return bodies
+
+
+def run_rigid(experiment, exact=None, beat=None) -> Run:
+    """Heat alone, bodies that do not move. `exact(x, t)` where the config names its solution."""
+    from mpm.records.variables import dataset_name, threshold
+    from mpm.rigid import solve
+    from mpm.rigid.run import Method
+
+    began = time.perf_counter()
+    found = {dataset_name(name): threshold(name) for name in experiment.output.observables if threshold(name) is not None}
+    times, grid = output_times(experiment), experiment.grid
+    kind = type(experiment.method.rigid).kind
+    options = {"order": experiment.method.rigid.order, "tolerance": experiment.method.rigid.tolerance} if kind == "implicit" else {}
+    method = Method(kind, step=None if experiment.time.step == "auto" else experiment.time.step, **options)
+    shift = np.array(experiment.method.offset) * grid.cell
+    levels = [(at.probe, at.kelvin) for at in found.values()]
+    look = Looks(experiment, times, exact)
+    solved = solve(rigid_bodies(experiment), grid.dimension, grid.cell, -shift, experiment.time.end, times, experiment.output.probes, levels, method, beat,
+                   snapshots=(look.times, look.points))  # fmt: skip
+    series = {dataset_name(name): values for name, values in solved.series.items()}
+    series["heat_total"] = series.pop("heat")
+    series |= look.errors(solved.snapshots[: len(solved.times)], shift)
+    finals = {name: float(values[-1]) for name, values in series.items()}
+    finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
+    finals["steps"] = float(solved.steps)
+    facts = solved.facts | {"unknowns": solved.unknowns, "rejected": solved.rejected, "limits": solved.limits, "binds": "accuracy"}
+    run = Run(solved.outcome, solved.times, series, finals, steps=solved.steps, facts=facts)
+    look.frames(solved.snapshots, run)
+    run.wall_time = time.perf_counter() - began
+    return run
+
+
+class Looks:
+    """Where and when a rigid run is looked at beside its probes: points of the bodies for the error against an exact solution, nodes for snapshots."""
+
+    def __init__(self, experiment, times: np.ndarray, exact):
+        grid, wanted = experiment.grid, watch(experiment, times)
+        self.exact, self.due, self.axes = exact, wanted.snapshots, {}
+        self.times = times if exact is not None else self.due
+        self.inside, self.weights = np.zeros((0, grid.directions)), np.zeros(0)
+        if exact is not None:
+            name = experiment.exact.body or next(iter(experiment.bodies))
+            outline = shape(experiment.bodies[name].shape, grid.dimension)
+            edges = [np.arange(round(size / grid.cell) + 1) * grid.cell for size in grid.size]
+            volume, _ = cut_quadrature(outline, edges, 2)
+            self.inside, self.weights = volume.x, volume.w * (volume.x[:, 0] if grid.dimension == "axisymmetric" else 1.0)
+        nodes = np.zeros((0, grid.directions))
+        if wanted.grid:
+            names = ("r", "z") if grid.dimension == "axisymmetric" else ("x", "y", "z")[: grid.directions]
+            self.axes = {axis: np.arange(round(size / grid.cell) + 1) * grid.cell for axis, size in zip(names, grid.size, strict=True)}
+            nodes = np.stack([a.ravel() for a in np.meshgrid(*self.axes.values(), indexing="ij")], axis=-1)
+        self.points = np.concatenate([self.inside, nodes])
+
+    def errors(self, seen: np.ndarray, shift: np.ndarray) -> dict[str, np.ndarray]:
+        """Root-mean-square and largest error at every output time; the exact solution stands in the grid's coordinates."""
+        if self.exact is None:
+            return {}
+        error = np.array([row[: len(self.weights)] - self.exact(self.inside + shift, t) for row, t in zip(seen, self.times, strict=False)])
+        square = (error**2 @ self.weights) / self.weights.sum()
+        return {"error_l2": np.sqrt(square), "error_max": np.abs(error).max(axis=1)}
+
+    def frames(self, seen: np.ndarray, run: Run) -> None:
+        """Snapshots on the grid, last direction first, NaN outside the bodies."""
+        if not self.axes:
+            return
+        shown = np.flatnonzero(np.isin(self.times, self.due))
+        shown = shown[self.times[shown] <= run.times[-1] * (1 + 1e-12)]
+        shape = tuple(len(a) for a in self.axes.values())
+        fields = seen[shown, len(self.weights) :].reshape(len(shown), *shape)
+        run.axes, run.snapshot_times = self.axes, self.times[shown]
+        run.grid = {"temperature": fields.transpose(0, *range(len(shape), 0, -1)).astype(np.float32)}
