@@ -77,6 +77,10 @@ def sample(experiment, body):
     grid, method = experiment.grid, experiment.method
     outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
+    if grid.dimension == "axisymmetric":
+        if method.offset[0] != 0:
+            raise SceneError("method.offset shifts an axisymmetric body that moves off its axis: only its second number may differ from 0")
+        lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
     edge = grid.cell / method.particles
     for low, high, size in zip(lower, upper, grid.size, strict=True):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
