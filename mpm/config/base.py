@@ -2,12 +2,13 @@
 
 Model   a mapping with fixed keys: `grid: {dimension: 2, cell: 1e-3}`
 Kind    a model that is named by the single key of its mapping: `{hencky: {E: 12e3, nu: 0.15}}`
-Menu    the kinds that one field allows. To add a kind, write its class and add it to the menu's list; paths, errors, sweeps and schema follow.
+Menu    the kinds that one field allows. To add a kind, write its class and add it to the list that the
+        menu is made of; paths, errors, sweeps and schema follow.
 
 A kind whose fields all have defaults may be written as a bare string: `transfer: apic`, `walls: {bottom: stick}`.
 """
 
-from typing import Any, ClassVar, get_args
+from typing import Annotated, Any, ClassVar, Union, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError, core_schema
@@ -55,7 +56,7 @@ class Choice:
 
 
 class Menu:
-    """Annotation of a field that holds one of several kinds: `Annotated[Hencky | NeoHookean, Menu("elastic law", Hencky, NeoHookean)]`."""
+    """Annotation of a field that holds one of several kinds; see `one_of`."""
 
     def __init__(self, what: str, *kinds: type[Kind]):
         self.what = what
@@ -94,6 +95,11 @@ class Menu:
             said = " and ".join(repr(key) for key in value) if value else "none"
             raise problem("kinds", f"expected exactly one {self.what}, found {said}", names, at=tuple(value)[1:2])
         return value
+
+
+def one_of(what: str, *kinds: type[Kind]) -> Any:
+    """The type of a field that holds one of several kinds: `elastic: one_of("elastic law", *ELASTIC) | None`."""
+    return Annotated[Union[kinds], Menu(what, *kinds)]  # noqa: UP007
 
 
 def tag(value: Any) -> str:

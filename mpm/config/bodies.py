@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 from pydantic_core import core_schema
 
-from mpm.config.base import Kind, Menu, Model, doc, problem
+from mpm.config.base import Kind, Model, doc, one_of, problem
 from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, Quantity, Temperature, Velocity
 
 Point = tuple[Coordinate, ...]
@@ -85,13 +85,13 @@ class Spin:
         return tuple(map(self.quantity.validate, value)) if isinstance(value, list | tuple) else self.quantity.validate(value)
 
 
-SHAPES = (Box, Ball, Cylinder, Ring, Polygon)
+SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon)
 
 
 class Body(Model):
     """A shape of one material, with temperature and velocity at the start."""
 
-    shape: Annotated[Box | Ball | Cylinder | Ring | Polygon, Menu("shape", *SHAPES)]
+    shape: one_of("shape", *SHAPES)
     material: str = doc(description="a name under materials")
     temperature: Temperature = doc(293.15, description="temperature at the start")
     velocity: tuple[Velocity, ...] | None = doc(None, description="velocity at the start, one number a direction; zero unless given")

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import model_validator
 
-from mpm.config.base import Choice, Kind, Menu, Model, doc, problem
+from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
 from mpm.config.quantities import Exchange, Temperature
 
 Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral"], Choice()]
@@ -56,4 +56,5 @@ class Contact(Kind):
     kind: ClassVar[str] = "contact"
 
 
-Wall = Annotated[Slip | Stick | Contact, Menu("wall", Slip, Stick, Contact)]
+WALLS: tuple[type[Kind], ...] = (Slip, Stick, Contact)
+Wall = one_of("wall", *WALLS)

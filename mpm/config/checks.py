@@ -11,7 +11,7 @@ from typing import Any
 from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES
 from mpm.config.explain import Finding
 from mpm.config.loose import MISSING, Unknown
-from mpm.config.problems import near
+from mpm.config.problems import MOST_FINDINGS, near
 from mpm.config.shapes_fit import misfits, outside
 from mpm.config.slots import Path, Slot
 
@@ -30,6 +30,8 @@ def check(experiment: Any) -> list[Finding]:
         except Unknown:
             continue
         for item in listed:
+            if len(found) > MOST_FINDINGS:
+                return found
             try:
                 found += list(rule(experiment, *item))
             except Unknown:
@@ -90,9 +92,9 @@ def grid(experiment: Any) -> Iterator[Finding]:
 
 
 def body(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
-    known = list(experiment.materials)
+    known = experiment.materials
     if item.material not in known:
-        yield Finding(("bodies", name, "material"), "there is no such material", known, near(item.material, known), given=item.material)
+        yield Finding(("bodies", name, "material"), "there is no such material", list(known), near(item.material, known), given=item.material)
 
 
 def body_shape(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
@@ -151,9 +153,9 @@ def anything(experiment: Any) -> Iterator[Finding]:
 
 
 def surface(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
-    known = list(experiment.bodies)
+    known = experiment.bodies
     if item.of not in known:
-        yield Finding(("surfaces", index, "of"), "there is no such body", known, near(item.of, known), given=item.of)
+        yield Finding(("surfaces", index, "of"), "there is no such body", list(known), near(item.of, known), given=item.of)
         return
     name = experiment.bodies[item.of].material
     if name in experiment.materials and experiment.materials[name].heat is None:
@@ -182,6 +184,11 @@ def surface_names(experiment: Any) -> Iterator[Finding]:
 def moves(experiment: Any) -> bool:
     """Whether any body is elastic; a section that is there but wrong counts."""
     return any(experiment.materials[item.material].elastic is not None for item in experiment.bodies.values() if item.material in experiment.materials)
+
+
+def heats(experiment: Any) -> bool:
+    """Whether any body has heat."""
+    return any(experiment.materials[item.material].heat is not None for item in experiment.bodies.values() if item.material in experiment.materials)
 
 
 def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
@@ -227,10 +234,19 @@ def probes(experiment: Any) -> Iterator[tuple]:
 
 
 def observables(experiment: Any) -> Iterator[tuple]:
-    yield from enumerate(experiment.output.observables)
+    physics = (known(heats, experiment), known(moves, experiment))
+    yield from ((index, name, *physics) for index, name in enumerate(experiment.output.observables))
 
 
-def observable(experiment: Any, index: int, name: str) -> Iterator[Finding]:
+def known(question: Callable[[Any], bool], experiment: Any) -> bool:
+    """The answer, and yes where it is not known."""
+    try:
+        return question(experiment)
+    except Unknown:
+        return True
+
+
+def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) -> Iterator[Finding]:
     from mpm.records.variables import OBSERVABLES, fits, observable_exists, threshold
 
     path = ("output", "observables", index)
@@ -244,9 +260,9 @@ def observable(experiment: Any, index: int, name: str) -> Iterator[Finding]:
         return
     found = threshold(name)
     if found is not None:
-        known = list(experiment.output.probes)
+        known = experiment.output.probes
         if found.probe not in known:
-            yield Finding(path, f"there is no probe {found.probe!r}", known or "a probe under output.probes", near(found.probe, known), given=name)
+            yield Finding(path, f"there is no probe {found.probe!r}", list(known) or "a probe under output.probes", near(found.probe, known), given=name)
     elif not fits(name, experiment.grid.dimension):
         yield Finding(
             path,
@@ -255,10 +271,9 @@ def observable(experiment: Any, index: int, name: str) -> Iterator[Finding]:
             given=name,
         )
     family = name.split(".", maxsplit=1)[0]
-    hot = any(experiment.materials[item.material].heat is not None for item in experiment.bodies.values() if item.material in experiment.materials)
     if family in ("temperature", "heat", "time_to") and not hot:
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
-    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain") and not moves(experiment):
+    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain") and not moving:
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from mpm.config.nodes import BAD, Node
-from mpm.config.problems import Problem, brief, listed, near
+from mpm.config.problems import MOST_FINDINGS, Problem, brief, listed, near
 from mpm.config.slots import Path, Slot
 
 EXPECTED = {
@@ -71,7 +71,7 @@ def problems(root: Node, findings: Iterable[Finding]) -> list[Problem]:
 
 def findings(error: ValidationError, slot: Slot, prefix: Path = ()) -> list[Finding]:
     """What pydantic says, in the words of a user of configs. `slot` is what was validated, at `prefix` of the data."""
-    return [finding(item, slot, prefix) for item in error.errors(include_url=False)]
+    return [finding(item, slot, prefix) for item in error.errors(include_url=False)[:MOST_FINDINGS]]
 
 
 def finding(item: dict, slot: Slot, prefix: Path) -> Finding:

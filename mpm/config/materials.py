@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import model_validator
 
-from mpm.config.base import Choice, Kind, Menu, Model, doc, problem
+from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
 from mpm.config.laws import law
 from mpm.config.quantities import Density, Fraction, Modulus, PerKelvin, Pressure, Quantity, StressPerKelvin, Temperature
 
@@ -80,9 +80,6 @@ class SourceExpansion(Kind):
     reference: Temperature = doc(293.15, description="temperature without thermal stress")
 
 
-Expansion = Annotated[LinearExpansion | ModulusExpansion | SourceExpansion, Menu("expansion law", LinearExpansion, ModulusExpansion, SourceExpansion)]
-
-
 class ElasticHeating(Model):
     """Heating and cooling by elastic change of volume, along the adiabat."""
 
@@ -100,12 +97,18 @@ class Heating(Model):
     dissipation: DissipationHeating | None = None
 
 
+ELASTIC: tuple[type[Kind], ...] = (Hencky,)
+FLOW: tuple[type[Kind], ...] = (Ellipse,)
+HEAT: tuple[type[Kind], ...] = (Fourier,)
+EXPANSION: tuple[type[Kind], ...] = (LinearExpansion, ModulusExpansion, SourceExpansion)
+
+
 class Material(Model):
     """A material: density, and a section for each physics it has."""
 
     density: Density = doc(description="mass density of the undeformed material")
-    elastic: Annotated[Hencky, Menu("elastic law", Hencky)] | None = doc(None, description="without it the body is rigid and does not move")
-    flow: Annotated[Ellipse, Menu("flow law", Ellipse)] | None = doc(None, description="viscoplastic flow; needs elastic")
-    heat: Annotated[Fourier, Menu("heat law", Fourier)] | None = doc(None, description="without it no heat is stored or conducted")
-    expansion: Expansion | None = doc(None, description="thermal stress; needs elastic and heat")
+    elastic: one_of("elastic law", *ELASTIC) | None = doc(None, description="without it the body is rigid and does not move")
+    flow: one_of("flow law", *FLOW) | None = doc(None, description="viscoplastic flow; needs elastic")
+    heat: one_of("heat law", *HEAT) | None = doc(None, description="without it no heat is stored or conducted")
+    expansion: one_of("expansion law", *EXPANSION) | None = doc(None, description="thermal stress; needs elastic and heat")
     heating: Heating | None = doc(None, description="heat from deformation; needs elastic and heat")

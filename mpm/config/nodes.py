@@ -16,6 +16,7 @@ from mpm.config.problems import Problem, brief, near
 MOST_BYTES = 1 << 20
 MOST_DEPTH = 20
 MOST_DIGITS = 30
+MOST_VALUES = 50_000  # the parser takes 10 to 20 us for each
 INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 WORDS = {"": None, "~": None, **dict.fromkeys(("null", "Null", "NULL")), **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -106,6 +107,7 @@ class Builder:
         self.pending: list[tuple[str | None, tuple[int, int]] | None] = []  # for each open mapping: the key that waits for its value
         self.under: list[Any] = []  # for each open collection: its key in the one around it
         self.root: Node | None = None
+        self.count = 0
 
     def report(self, line: int, column: int, message: str, **more: str) -> None:
         path = ".".join(str(key) for key in self.path()[:8])
@@ -172,6 +174,10 @@ class Builder:
 
     def open(self, event: Any, kind: str, line: int, column: int) -> bool:
         """A scalar, an alias, or the beginning of a collection."""
+        self.count += 1
+        if self.count > 2 * MOST_VALUES:
+            self.report(line, column, f"more than {MOST_VALUES} values in one file", allowed="ranges, samples and zips in place of long lists")
+            return False
         bad = self.forbidden(event, kind, line, column)
         if kind in ("AliasEvent", "ScalarEvent"):
             value = BAD if bad else event.value

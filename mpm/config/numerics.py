@@ -2,7 +2,7 @@
 
 from typing import Annotated, ClassVar, Literal
 
-from mpm.config.base import Choice, Kind, Menu, Model, doc
+from mpm.config.base import Choice, Kind, Model, doc, one_of
 from mpm.config.quantities import Fraction, Length, Positive, Quantity, Time, TimeOrAuto, Whole
 
 Dimension = Annotated[Literal[0, 1, 2, "axisymmetric", 3], Choice()]
@@ -71,7 +71,9 @@ class Explicit(Kind):
     kind: ClassVar[str] = "explicit"
 
 
-Transfer = Annotated[Apic | Flip | Pic, Menu("transfer", Apic, Flip, Pic)]
+TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic)
+RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
+Transfer = one_of("transfer", *TRANSFERS)
 
 
 class Method(Model):
@@ -84,4 +86,4 @@ class Method(Model):
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat_step: TimeOrAuto = doc("auto", description="time step of heat in moving bodies")
     offset: tuple[Offset, ...] = doc((), description="shift of bodies and probes against the grid lines, in cells, one a direction; zero unless given")
-    rigid: Annotated[AutoHeat | Implicit | Explicit, Menu("integrator", AutoHeat, Implicit, Explicit)] = doc(AutoHeat(), description="heat in rigid bodies")
+    rigid: one_of("integrator", *RIGID) = doc(AutoHeat(), description="heat in rigid bodies")

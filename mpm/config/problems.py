@@ -1,11 +1,14 @@
 """Problem: one thing that is wrong, where, and what would be right. ConfigError: all of them."""
 
 import difflib
+import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 MOST_SHOWN = 50
+MOST_LISTED = 80
+MOST_FINDINGS = 200  # of one kind of check; a file with more is not a config with slips
 WIDTH = 120
 
 
@@ -61,14 +64,15 @@ def listed(allowed: Any) -> str:
     """Allowed values as a user reads them."""
     if isinstance(allowed, str):
         return allowed
-    return ", ".join(str(item) for item in allowed)
+    rest = len(allowed) - MOST_LISTED
+    return ", ".join(str(item) for item in list(allowed)[:MOST_LISTED]) + (f", and {rest} more" if rest > 0 else "")
 
 
 def near(word: Any, allowed: Iterable[Any]) -> str:
     """The allowed word nearest to a misspelt one, or nothing."""
     if not isinstance(word, str) or len(word) > WIDTH:
         return ""
-    words = {str(item): item for item in allowed}
+    words = {str(item): item for item in itertools.islice(allowed, MOST_FINDINGS)}
     lower = {name.lower(): name for name in words}
     found = [lower[word.lower()]] if word.lower() in lower and word not in words else difflib.get_close_matches(word, words, 1, 0.6)
     return f"'{found[0]}'" if found else ""

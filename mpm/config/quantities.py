@@ -47,6 +47,11 @@ class Quantity:
         return {"anyOf": [number, text], "description": self.name, "x-unit": self.unit or "1"}
 
     @property
+    def units(self) -> str:
+        """The unit as datasets write it: W/m2/K, and 1 for a pure number."""
+        return self.unit.replace("**", "") or "1"
+
+    @property
     def wanted(self) -> str:
         """What would be right, in words: `a number above 0 [K] or text with a unit, like "2 K"`."""
         bounds = [f"above {self.above:g}"] * math.isfinite(self.above) + [f"at least {self.least:g}"] * math.isfinite(self.least)

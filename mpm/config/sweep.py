@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field
 from pydantic_core import core_schema
 
-from mpm.config.base import Kind, Menu, Model, doc, problem
+from mpm.config.base import Kind, Model, doc, one_of, problem
 from mpm.config.quantities import Whole
 
 Count = Annotated[int, Whole("count", 1, 10**9)]
@@ -94,11 +94,14 @@ class Uniform(Design):
     kind: ClassVar[str] = "uniform"
 
 
+DESIGNS: tuple[type[Kind], ...] = (Sobol, Latin, Halton, Uniform)
+
+
 class Sweep(Model):
     """The points of a sweep: the product of all axes, zips, the sample and the list of points, without what `where` drops."""
 
     axes: dict[str, Axis] = doc({}, description="parameter: list of values, {linear: [first, last, count]} or {log: [first, last, count]}")
     zip: tuple[dict[str, Values], ...] = doc((), description="parameters that move together, one dimension an entry")
-    sample: Annotated[Sobol | Latin | Halton | Uniform, Menu("design", Sobol, Latin, Halton, Uniform)] | None = None
+    sample: one_of("design", *DESIGNS) | None = None
     points: tuple[dict[str, Any], ...] = doc((), description="an explicit list of points")
     where: str | None = doc(None, description="a condition on swept parameters; points that fail it are skipped")

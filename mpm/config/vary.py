@@ -3,6 +3,7 @@
 A group is a dimension: an axis (one parameter), a zip (several that move together), the sample, the list of points.
 """
 
+import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from mpm.config.names import Names, UnknownName
 from mpm.config.problems import listed
 from mpm.config.slots import Path, Slot
 
+MOST_PARAMETERS = 100
 RESERVED = {"point", "sample", "obs", "dim", "x", "y", "z", "r"}
 
 
@@ -78,6 +80,9 @@ class Vary:
     def read(self) -> Variation:
         """The groups and the condition."""
         sweep, groups = self.sweep, []
+        if (names := self.count()) > MOST_PARAMETERS:
+            self.found.append(Finding(("sweep",), f"{names} names of parameters", f"at most {MOST_PARAMETERS}", on_key=True))
+            return Variation([])
         for name, axis in sweep.axes.items():
             groups += self.axis(name, axis)
         for index, together in enumerate(sweep.zip):
@@ -94,6 +99,12 @@ class Vary:
         if not groups and not self.found:
             self.found.append(Finding(("sweep",), "nothing varies", ["axes", "zip", "sample", "points"], on_key=True))
         return variation
+
+    def count(self) -> int:
+        """How many different names the sweep uses."""
+        sweep = self.sweep
+        ranges = sweep.sample.ranges if sweep.sample is not None else {}
+        return len({*sweep.axes, *ranges, *(name for entry in (*sweep.zip, *sweep.points) for name in entry)})
 
     def parameter(self, name: str, where: Path) -> Parameter | None:
         """A parameter by its name."""
@@ -149,11 +160,12 @@ class Vary:
     def fill(self, parameter: Parameter, values: tuple, where: Path, distinct: bool = True) -> None:
         """A list of values; on an axis of its own each value once."""
         parameter.values = [self.value(parameter, value, (*where, index)) for index, value in enumerate(values)]
-        seen: list[Any] = []
+        seen: set[str] = set()
         for index, value in enumerate(parameter.values):
-            if distinct and value is not None and value in seen:
+            text = json.dumps(value)
+            if distinct and value is not None and text in seen:
                 self.found.append(Finding((*where, index), "this value is in the list twice", "each value once", given=values[index]))
-            seen.append(value)
+            seen.add(text)
 
     def zip(self, index: int, together: dict[str, tuple]) -> list[Group]:
         where: Path = ("sweep", "zip", index)

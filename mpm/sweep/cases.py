@@ -193,7 +193,7 @@ class Points:
         numbers = all(isinstance(value, float | int) and not isinstance(value, bool) for value in raw)
         quantity = parameter.slot.quantity
         values = np.array(raw, dtype=float) if numbers else np.array([label(value) for value in raw], dtype=object)
-        units = (quantity.unit.replace("**", "") or "1") if quantity and numbers else "1" if numbers else ""
+        units = quantity.units if quantity and numbers else "1" if numbers else ""
         return Coordinate(parameter.short, values, units, parameter.slot.description or parameter.short, parameter.spoken)
 
 
