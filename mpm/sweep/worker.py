@@ -106,10 +106,14 @@ class Worker:
                 self.orders.put(order)
 
     def live(self) -> None:
-        """Import (the runner may list in NEEDS what it would else import under the first point), then obey until told to quit."""
+        """Import, then obey until told to quit.
+
+        The runner may list in NEEDS what it would else import under the first point. `mpm.jit` names the compile cache after the source:
+        imported now, all workers of a sweep share one, even while somebody edits.
+        """
         threading.Thread(target=self.listen, daemon=True).start()
         runner = importlib.import_module(self.runner)
-        for module in ("mpm.records.point", "h5py", *getattr(runner, "NEEDS", ())):
+        for module in ("mpm.records.point", "h5py", *getattr(runner, "NEEDS", ("mpm.jit",))):
             importlib.import_module(module)
         config = importlib.import_module("mpm.config")
         self.tell({"is": "ready"})

@@ -11,6 +11,7 @@ import numpy as np
 from mpm.outcome import INVERTED, Outcome, outcome
 from mpm.state import Run
 
+NEEDS = ()  # no numba: these tests start many workers
 RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS, BRIEF = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0
 
 
