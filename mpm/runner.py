@@ -4,6 +4,8 @@ run_point(experiment, beat) -> Run      warm(experiment): compile what it needs 
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 """
 
+import numpy as np
+
 from mpm.state import Run
 
 
@@ -22,7 +24,18 @@ def run_point(experiment, beat=None) -> Run:
 
         run = run_rigid(experiment, exact, beat)
     run.facts["physics"] = physics(experiment)
+    run.finals |= misfits(experiment, run)
     return run
+
+
+def misfits(experiment, run: Run) -> dict[str, float]:
+    """Root-mean-square difference between each probe and what was measured there, at the measured times that the run reached."""
+    found = {}
+    for probe, curve in experiment.output.measured.items():
+        samples = np.array([pair for pair in curve.samples if pair[0] <= run.times[-1] * (1 + 1e-9)]).reshape(-1, 2)
+        difference = np.interp(samples[:, 0], run.times, run.series[f"temperature_{probe}"]) - samples[:, 1]
+        found[f"misfit_{probe}"] = float(np.sqrt(np.mean(difference**2))) if len(samples) else float("nan")
+    return found
 
 
 def physics(experiment) -> dict[str, list[str]]:

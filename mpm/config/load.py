@@ -10,6 +10,7 @@ from mpm.config.checks import check
 from mpm.config.experiment import Experiment
 from mpm.config.explain import Finding, findings, problems, shown
 from mpm.config.loose import MISSING, Unknown, loose
+from mpm.config.measured import embed
 from mpm.config.merge import extend, put
 from mpm.config.names import GREEK, ROOT, Names, UnknownName
 from mpm.config.nodes import BAD, Node, Origin, read, read_file, wrap
@@ -42,6 +43,8 @@ def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None =
         trial = copy(root)
         apply(trial, wanted + given, found)
         found += validate(trial)[1]
+    if experiment is not None:
+        found += problems(full, embed(experiment, path.parent if path else File()))
     if found or experiment is None:
         raise ConfigError(found)
     experiment._source, experiment._path, experiment._tree = text, path, full

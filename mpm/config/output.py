@@ -1,9 +1,10 @@
 """What a run writes, and the exact solution it is compared with."""
 
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
-from mpm.config.base import Kind, Menu, Model, doc
+from mpm.config.base import Kind, Model, doc, one_of
 from mpm.config.bodies import Point
+from mpm.config.measured import Measured
 from mpm.config.quantities import Time
 
 
@@ -22,6 +23,7 @@ class Output(Model):
     probes: dict[str, Point] = doc({}, description="points that are followed, by name")
     observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
     snapshots: Snapshots | None = None
+    measured: dict[str, Measured] = doc({}, description="measured temperatures by probe: drawn beside the run, and compared with it (misfit_<probe>)")
 
 
 class RobinSlab(Kind):
@@ -38,4 +40,5 @@ class RobinCylinder(Kind):
     body: str | None = doc(None, description="the body that is the cylinder; the only one unless given")
 
 
-Exact = Annotated[RobinSlab | RobinCylinder, Menu("exact solution", RobinSlab, RobinCylinder)]
+EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder)
+Exact = one_of("exact solution", *EXACT)

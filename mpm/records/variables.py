@@ -134,6 +134,10 @@ def describe(name: str) -> Variable:
         unit = "°C" if found.unit == "degC" else "K"
         return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
     field, _, probe = name.partition("_")
+    if field == "misfit" and probe:
+        return Variable(name, "", "K", POINT, f"root-mean-square difference from the temperature measured at {probe.replace('_', ' ')}")
+    if field == "measured" and probe.startswith("temperature_"):
+        return Variable(name, "θ", "K", SERIES, f"temperature measured at {probe.removeprefix('temperature_').replace('_', ' ')}")
     if field in _AT_PROBE and probe:
         return replace(VARIABLES[field], name=name, dims=SERIES, long_name=f"{field} at {probe.replace('_', ' ')}")
     raise KeyError(name)

@@ -146,7 +146,17 @@ class Table:
                 columns[name][(*index, onto)] = values[samples]
         for name, values in columns.items():
             group.variables[name] = described(name, (*self.dims, "time"), values)
+        group.variables |= self.measured()
         return group
+
+    def measured(self) -> dict[str, Array]:
+        """Measured curves of the config, each over its own times."""
+        found = {}
+        for probe, curve in self.plan.cases[0].experiment.output.measured.items() if self.plan.cases else ():
+            samples, dim = np.array(curve.samples), f"measured_time_{probe}"
+            found[dim] = Array((dim,), samples[:, 0], {"units": "s", "long_name": f"times measured at {probe.replace('_', ' ')}"})
+            found[f"measured_temperature_{probe}"] = described(f"measured_temperature_{probe}", (dim,), samples[:, 1], source=curve.file)
+        return found
 
     def snapshots(self) -> np.ndarray:
         """Times of the snapshots."""
