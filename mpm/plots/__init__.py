@@ -1,0 +1,95 @@
+"""Plots: a dataset in, a figure out.
+
+    overview(tree, path)           the figure that `mpm sweep` leaves beside its dataset, chosen by what the dataset holds
+    figures(out, names, path)      what `mpm plot OUT [NAME...]` writes
+    KINDS                          names of figures: overview, series, finals, snapshot
+
+Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the first listed observable) over the longest axis, a line a value of the other;
+                              beside it the probes' temperatures of a few points, coloured by swept value. A third axis makes a panel a value; further ones stay
+                              at the chosen point.
+            a sample          observables against each parameter, and rank correlations with bootstrap intervals
+            one point         its series
+            no point ok       words: how many points, and why
+Marks       a point that is not ok is a cross under the data, its reason in the legend; a threshold that was not reached is a triangle above it
+Units       as stored, but degrees Celsius for temperatures (not for differences), minutes or hours for long times, millimetres for small lengths
+Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_<series>(measured_time)`, for example
+            `measured_temperature_centre` [K], with `units`, `long_name` and, if known, `source`; `measured_time` is its coordinate [s]. One time axis serves all
+            measured curves: NaN where a curve has no value. They have no swept dimensions. The point nearest to all of them is the chosen point.
+May use     xarray, matplotlib, mpm.records.variables                                    May not  see config, sweep or anything that computes
+To add      a function View -> Figure in layouts.py or a sibling, and a line in `_draw`
+"""
+
+import errno
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+KINDS = ("overview", "series", "finals", "snapshot")
+DATASETS = ("sweep.nc", "run.nc")
+
+
+class UnknownFigure(ValueError):
+    """A name that is not in KINDS."""
+
+
+def overview(tree: Any, path: Path | str | None = None) -> Any:
+    """The figure of a dataset tree, and the file `path` (PNG, SVG or PDF) where one is given. Never raises for points that failed."""
+    return _finish(_draw(tree, "overview"), path)
+
+
+def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Path | str | None = None, svg: bool = False) -> list[Path]:
+    """Figures of the dataset in a folder, or of a dataset file; the paths written.
+
+    names   of KINDS, one or several; the overview unless given
+    path    the file of a single figure; else <folder>/<name>.png (.svg with `svg`)
+    Raises UnknownFigure for a name, FileNotFoundError where there is no dataset.
+    """
+    wanted = [names or "overview"] if names is None or isinstance(names, str) else list(names) or ["overview"]
+    for name in wanted:
+        if name not in KINDS:
+            raise UnknownFigure(f"there is no figure {name!r}; there are {', '.join(KINDS)}")
+    if path is not None and len(wanted) > 1:
+        raise UnknownFigure(f"one file cannot hold {len(wanted)} figures; leave the file out, or name one figure")
+    dataset = _dataset(Path(out))
+    tree, suffix = _open(dataset), ".svg" if svg else ".png"
+    targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]
+    for name, target in zip(wanted, targets, strict=True):
+        _finish(_draw(tree, name), target)
+    return targets
+
+
+def _dataset(out: Path) -> Path:
+    """The dataset file of a folder: sweep.nc, else run.nc."""
+    if out.is_file():
+        return out
+    for name in DATASETS:
+        if (out / name).exists():
+            return out / name
+    raise FileNotFoundError(errno.ENOENT, f"holds no {' and no '.join(DATASETS)}", os.fspath(out))
+
+
+def _open(path: Path) -> Any:
+    """A dataset file as a tree in memory."""
+    import xarray
+
+    with xarray.open_datatree(path, engine="h5netcdf") as tree:
+        return tree.load()
+
+
+def _draw(tree: Any, name: str) -> Any:
+    """A figure by its name."""
+    from mpm.plots import layouts, snapshot
+    from mpm.plots.view import View
+
+    kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals, "snapshot": snapshot.snapshot}
+    return kinds[name](View(tree))
+
+
+def _finish(fig: Any, path: Path | str | None) -> Any:
+    """Write a figure where a path is given."""
+    from mpm.plots.style import save
+
+    if path is not None:
+        save(fig, path)
+    return fig

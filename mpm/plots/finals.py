@@ -1,0 +1,142 @@
+"""Panels of one number a point: a final observable over a swept axis, a line for each value of another; what failed is marked and says why."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.transforms import blended_transform_factory
+
+from mpm.plots import words
+from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, legend_below
+from mpm.plots.view import LOG_RATIO, Axis, View
+
+ROW = 0.045  # height of a row of marks, in the panel's height
+MOST_IN_LEGEND = 8
+
+
+def table(view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int]) -> np.ndarray:
+    """A final as rows (lines) and columns (x), the other dimensions at `at`."""
+    return slab(view, np.asarray(view.root[name].transpose(*view.dims).values, dtype=float), x, lines, at)
+
+
+def slab(view: View, array: np.ndarray, x: Axis, lines: Axis | None, at: dict[str, int]) -> np.ndarray:
+    """Rows and columns of any array over the swept dimensions."""
+    kept = [dim for dim in view.dims if dim == x.dim or (lines is not None and dim == lines.dim)]
+    cut = array[tuple(slice(None) if dim in kept else at[dim] for dim in view.dims)]
+    if lines is None:
+        return cut[None, :]
+    return cut if kept.index(lines.dim) < kept.index(x.dim) else cut.T
+
+
+def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], legend: bool = True) -> None:
+    """A final over axis `x`."""
+    values, colours = table(view, name, x, lines, at), [OKABE_ITO[0]] if lines is None else lines.colours()
+    scale = view.scale(name)
+    shown, order = scale(values), np.argsort(x.positions, kind="stable")
+    for row, colour in zip(shown, colours, strict=True):
+        ax.plot(x.positions[order], row[order], "-o", color=colour, clip_on=False, zorder=3)
+    x.apply(ax)
+    ax.set_ylabel(view.label(name, scale.units))
+    wide(ax, shown, name)
+    handles = [] if lines is None else keys(ax, lines, colours)
+    handles += marks(ax, view, name, x, lines, at, values, colours)
+    if not np.isfinite(values).any():
+        ax.text(0.5, 0.5, "no number here", transform=ax.transAxes, ha="center", color=QUIET)
+    if legend and handles:
+        below(ax, handles, lines)
+
+
+def below(ax: Any, handles: list[Any], lines: Axis | None) -> None:
+    """Values in one row where they fit, reasons under them."""
+    values = [handle for handle in handles if handle.get_linestyle() != "None"]
+    reasons = [handle for handle in handles if handle.get_linestyle() == "None"]
+    if not reasons:
+        legend_below(ax, values, lines.title if lines else "", min(len(values), 6))
+        return
+    if values:
+        first = legend_below(ax, values, lines.title if lines else "", min(len(values), 6))
+        ax.add_artist(first)
+    drop = -0.17 - (0.13 + 0.055 * ((len(values) - 1) // 6) if values else 0.0)
+    ax.legend(handles=reasons, loc="upper center", bbox_to_anchor=(0.5, drop), ncols=1, handletextpad=0.4)
+
+
+def keys(ax: Any, lines: Axis, colours: list[Any]) -> list[Any]:
+    """Legend entries of the lines; a colour bar where they are many."""
+    if lines.size <= MOST_IN_LEGEND or lines.category:
+        return [Line2D([], [], color=colours[i], marker="o", label=lines.text(i)) for i in np.argsort(lines.ranks())][:20]
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    rank = np.argsort(lines.ranks())
+    bar = ax.figure.colorbar(ScalarMappable(BoundaryNorm(np.arange(lines.size + 1) - 0.5, lines.size), ListedColormap([colours[i] for i in rank])), ax=ax, pad=0.02)
+    ticks = [i for i in range(lines.size) if i % max(1, (lines.size - 1) // 6) == 0]
+    bar.set_ticks(ticks, labels=[lines.text(rank[i]) for i in ticks])
+    bar.set_label(lines.label)
+    bar.minorticks_off()
+    return []
+
+
+def wide(ax: Any, values: np.ndarray, name: str) -> None:
+    """A logarithmic vertical axis where the values are positive and span a wide range, and for errors."""
+    finite = values[np.isfinite(values)]
+    if finite.size and (finite > 0).all() and (name.startswith("error_") or finite.max() / finite.min() > LOG_RATIO):
+        ax.set_yscale("log")
+
+
+def marks(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], values: np.ndarray, colours: list[Any]) -> list[Any]:
+    """Crosses for points without a number, in rows under the data, a row a line; triangles above it for a threshold that was not reached."""
+    reasons, ok = slab(view, view.reasons, x, lines, at), slab(view, view.ok, x, lines, at)
+    late = ok & ~np.isfinite(values)
+    texts, counts = np.unique([text for text in reasons.ravel() if text], return_counts=True)
+    rows_below = [i for i in range(len(values)) if any(reasons[i])]
+    rows_above = [i for i in range(len(values)) if late[i].any()]
+    room(ax, len(rows_below), len(rows_above))
+    place, handles = blended_transform_factory(ax.transData, ax.transAxes), []
+    for mark, text, count in zip(np.resize(MARKS, len(texts)), texts, counts, strict=True):
+        pending = text == "pending"
+        for row, i in enumerate(rows_below):
+            here = reasons[i] == text
+            heights = np.full(here.sum(), ROW * (row + 0.8))
+            ax.plot(x.positions[here], heights, "." if pending else mark, color=colours[i], ms=4 if pending else 7, mew=1.8, transform=place, zorder=4)
+        label = f"{text} ({words.counted(int(count), 'point')})"
+        handles.append(Line2D([], [], color=INK, marker="." if pending else mark, ls="None", ms=4 if pending else 7, mew=1.8, label=label))
+    for row, i in enumerate(rows_above):
+        heights = np.full(late[i].sum(), 1 - ROW * (row + 0.6))
+        ax.plot(x.positions[late[i]], heights, "^", mfc="white", color=colours[i], mew=1.4, ms=6, transform=place, zorder=4)
+    if rows_above:
+        text = "not reached before the end" if name.startswith("time_to_") else "no value"
+        handles.append(Line2D([], [], color=INK, marker="^", mfc="white", ls="None", mew=1.4, ms=6, label=f"{text} ({words.counted(int(late.sum()), 'point')})"))
+    return handles
+
+
+def room(ax: Any, below: int, above: int) -> None:
+    """Stretch the vertical axis so that rows of marks do not touch the data."""
+    low, high = (transform := ax.yaxis.get_transform()).transform(np.array(ax.get_ylim()))
+    down, up = ROW * (below + 0.6) if below else 0.0, ROW * (above + 0.6) if above else 0.0
+    span = (high - low) / max(0.3, 1 - down - up)
+    ax.set_ylim(transform.inverted().transform(np.array([low - span * down, high + span * up])))
+
+
+def errors(ax: Any, view: View, x: Axis, at: dict[str, int]) -> None:
+    """Errors against the exact solution over an axis, logarithmic both where they can be; over a cell or a step, the slope that they fall with."""
+    names = [name for name in ("error_l2", "error_max") if name in view.finals]
+    scale, order, handles = view.scale(names[0]), np.argsort(x.positions, kind="stable"), []
+    for name, colour, dash in zip(names, OKABE_ITO, DASHES, strict=False):
+        values = scale(table(view, name, x, None, at))[0]
+        ax.plot(x.positions[order], values[order], color=colour, ls=dash, marker="o", clip_on=False, zorder=3)
+        said = {"error_l2": "root mean square", "error_max": "largest"}[name]
+        if x.name in ("cell", "step") and (rate := slope(x.values, values)) is not None:
+            said += f", order {rate:.2f}"
+        handles.append(Line2D([], [], color=colour, ls=dash, marker="o", label=said))
+    x.apply(ax)
+    ax.set_ylabel(words.with_units("Error against the exact solution", scale.units))
+    every = np.concatenate([table(view, name, x, None, at).ravel() for name in names])
+    wide(ax, every, names[0])
+    handles += marks(ax, view, names[0], x, None, at, table(view, names[0], x, None, at), [INK])
+    below(ax, handles, None)
+
+
+def slope(sizes: np.ndarray, values: np.ndarray) -> float | None:
+    """Least-squares slope of log(values) over log(sizes); None with fewer than three points."""
+    known = np.isfinite(values) & (values > 0) & (sizes > 0)
+    return float(np.polyfit(np.log(sizes[known]), np.log(values[known]), 1)[0]) if known.sum() > 2 else None

@@ -1,0 +1,159 @@
+"""Whole figures from panels: the overview of a dataset, its finals, its series."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mpm.plots import finals, series, words
+from mpm.plots.style import INK, QUIET, figure, styled
+from mpm.plots.view import Axis, View, spread
+
+
+def overview(view: View) -> Any:
+    """The figure that answers the question of the dataset, by what is in it."""
+    with styled():
+        if not view.ok.any():
+            return nothing(view)
+        if view.design is not None:
+            from mpm.plots.sample import scatter
+
+            return scatter(view)
+        return swept(view) if view.axes and view.finals else single(view)
+
+
+def nothing(view: View) -> Any:
+    """No point is ok: say so, and why."""
+    fig = figure(view.title, 3.4)
+    ax = fig.add_subplot()
+    ax.set_axis_off()
+    reasons, points = view.counted_reasons(), view.status.size
+    head = "No point has run yet." if set(reasons) <= {"pending"} else f"None of {words.counted(points, 'point')} is ok." if points > 1 else "The point is not ok."
+    ax.text(0.0, 0.9, head, fontsize=13, color=INK, transform=ax.transAxes, va="top")
+    rows = [f"{count} ×  {text}" for text, count in list(reasons.items())[:8]]
+    if len(reasons) > 8:
+        rows.append(f"and {len(reasons) - 8} other reasons")
+    ax.text(0.0, 0.72, "\n".join(rows), fontsize=10.5, color=QUIET, transform=ax.transAxes, va="top", linespacing=1.6)
+    return fig
+
+
+def arrange(view: View) -> tuple[Axis, Axis | None, list[Axis]]:
+    """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along."""
+    order = sorted(view.axes, key=lambda axis: (axis.category, axis.name not in ("cell", "step"), -axis.size))
+    return order[0], order[1] if len(order) > 1 else None, order[2:]
+
+
+def swept(view: View) -> Any:
+    """A final over one axis with a line a value of another (a panel a value of a third), beside the series of a few points."""
+    x, lines, rest = arrange(view)
+    at, name = dict(view.chosen), view.finals[0]
+    facets = spread(rest[0].size, 3) if rest else [None]
+    names = series_of(view)
+    count = len(facets) + bool(names)
+    columns = min(count, 2)
+    rows = math.ceil(count / columns)
+    fig = figure(view.title, 5.0 * rows if rows > 1 else 5.2)
+    grid = fig.subplots(rows, columns, squeeze=False).ravel()
+    for ax in grid[count:]:
+        ax.set_axis_off()
+    for ax, facet in zip(grid, facets, strict=False):
+        here = at if facet is None else {**at, rest[0].dim: facet}
+        if name == "error_l2" and lines is None:
+            finals.errors(ax, view, x, here)
+        else:
+            finals.panel(ax, view, name, x, lines, here)
+        fixed = [axis.says(here[axis.dim]) for axis in rest]
+        ax.set_title(", ".join(fixed))
+    if len(facets) > 1:
+        share(grid[: len(facets)])
+    if names:
+        ax, colour = grid[len(facets)], lines or x
+        series.panel(ax, view, names, colour, at)
+        fixed = [axis.says(at[axis.dim]) for axis in view.axes if axis is not colour]
+        told = series.agreement(view, names, at)
+        best = ", ".join([*fixed, *([f"{colour.says(at[colour.dim])} has {told}"] if told else [])])
+        ax.set_title(best, fontsize=9.5)
+    return fig
+
+
+def series_of(view: View) -> list[str]:
+    """The series that the overview shows: probes' temperatures, else the first family."""
+    there = view.series_names()
+    probes = [name for name in view.probes if name in there]
+    return probes[:4] or (view.families()[0][:4] if there else [])
+
+
+def share(axes: Any) -> None:
+    """One vertical range for panels of the same quantity."""
+    limits = np.array([ax.get_ylim() for ax in axes])
+    for ax in axes:
+        ax.set_ylim(limits[:, 0].min(), limits[:, 1].max())
+
+
+def single(view: View) -> Any:
+    """Series of one point, a panel a family."""
+    return families(view, None)
+
+
+def all_series(view: View) -> Any:
+    """Every family of series: of one point, or of a few along the axis that colours tell."""
+    with styled():
+        if not view.series_names():
+            return nothing(view) if not view.ok.any() else empty(view, "The dataset holds no series.")
+        if view.design is not None:
+            return families(view, view.parameters[0] if view.parameters else None)
+        x, lines, _ = arrange(view) if view.axes else (None, None, [])
+        return families(view, lines or x)
+
+
+def families(view: View, lines: Axis | None) -> Any:
+    """A panel a family of series, six at most."""
+    groups = view.families()[:6]
+    if not groups:
+        return empty(view, "The dataset holds no series.")
+    columns = 1 if len(groups) == 1 else 2 if len(groups) in (2, 4) else 3
+    rows = math.ceil(len(groups) / columns)
+    fig = figure(view.title, 4.8 if rows == 1 else 3.9 * rows)
+    grid = fig.subplots(rows, columns, squeeze=False).ravel()
+    at = dict(view.chosen)
+    for ax, names in zip(grid, groups, strict=False):
+        series.panel(ax, view, names[:5], lines, at)
+        told = series.agreement(view, names, at)
+        if told:
+            ax.set_title(f"{lines.says(at[lines.dim])} has {told}" if lines else words.title_case(told), fontsize=9.5)
+    for ax in grid[len(groups) :]:
+        ax.set_axis_off()
+    return fig
+
+
+def all_finals(view: View) -> Any:
+    """Up to six finals over the first axis."""
+    with styled():
+        if not view.ok.any():
+            return nothing(view)
+        if view.design is not None:
+            from mpm.plots.sample import scatter
+
+            return scatter(view, most=6)
+        if not view.axes or not view.finals:
+            return empty(view, "One point: its finals are numbers, not a figure (mpm run prints them).")
+        x, lines, _ = arrange(view)
+        names = [name for name in view.finals if name != "heat_ledger"][:6]
+        columns = min(3, len(names))
+        rows = math.ceil(len(names) / columns)
+        fig = figure(view.title, 4.6 if rows == 1 else 3.9 * rows)
+        grid = fig.subplots(rows, columns, squeeze=False).ravel()
+        for ax, name in zip(grid, names, strict=False):
+            finals.panel(ax, view, name, x, lines, dict(view.chosen))
+        for ax in grid[len(names) :]:
+            ax.set_axis_off()
+        return fig
+
+
+def empty(view: View, text: str) -> Any:
+    """A figure that says why it shows nothing."""
+    fig = figure(view.title, 2.4)
+    ax = fig.add_subplot()
+    ax.set_axis_off()
+    ax.text(0.0, 0.8, text, color=QUIET, fontsize=11, transform=ax.transAxes, va="top")
+    return fig

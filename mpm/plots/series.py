@@ -1,0 +1,144 @@
+"""Panels of observables over time: a few points of the sweep, coloured by the swept value, with the measured curve as dots."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from mpm.plots import words
+from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, legend_below
+from mpm.plots.view import Axis, View, spread
+
+MOST_LINES = 5
+DOTS = ("o", "s", "D", "^", "v")
+TEMPERATURE = "Temperature"
+
+
+def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[str, int], legend: bool = True) -> None:
+    """Series `names` (one unit) over time; one colour a value of `lines`, one dash a series. Without `lines`, one colour a series."""
+    time = np.asarray(view.series["time"].values, dtype=float)
+    clock, scale = words.scale(time, "s"), together(view, names)
+    indices = [None] if lines is None else picked(lines, at)
+    colours = OKABE_ITO if lines is None else lines.colours()
+    ended = False
+    for i in indices:
+        here = at if lines is None else {**at, lines.dim: i}
+        for j, name in enumerate(names):
+            colour, dash = (colours[j % len(colours)], "-") if lines is None else (colours[i], DASHES[j % len(DASHES)])
+            values = row(view, name, here)
+            ax.plot(clock(time), scale(values), color=colour, ls=dash, zorder=3)
+            ended |= stopped(ax, view, here, clock(time), scale(values), colour)
+            crossings(ax, view, name, here, clock, colour)
+    for name in names:
+        levels(ax, view, name)
+    ax.set_xlabel(words.with_units("Time", clock.units))
+    ax.set_ylabel(words.with_units(shared_label(view, names), scale.units))
+    ax.margins(x=0.01)
+    calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]))
+    dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
+    if legend:
+        legend_below(ax, entries(view, names, lines, indices, ended) + dots, lines.title if lines else "", None)
+
+
+def entries(view: View, names: list[str], lines: Axis | None, indices: list[Any], ended: bool) -> list[Any]:
+    """Legend entries of colours, dashes and marks."""
+    if lines is None:
+        found = [Line2D([], [], color=OKABE_ITO[j % len(OKABE_ITO)], label=called(view, name)) for j, name in enumerate(names)]
+        found = found if len(names) > 1 else []
+    else:
+        colours = lines.colours()
+        found = [Line2D([], [], color=colours[i], label=lines.text(i)) for i in indices]
+        found += [Line2D([], [], color=INK, ls=DASHES[j % len(DASHES)], label=called(view, name)) for j, name in enumerate(names) if len(names) > 1]
+    return found + ([Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else [])
+
+
+def picked(lines: Axis, at: dict[str, int]) -> list[int]:
+    """Values of the axis to draw: a few, in order, the chosen point among them."""
+    order = list(np.argsort(lines.ranks()))
+    places = spread(lines.size, MOST_LINES)
+    home = order.index(at[lines.dim])
+    if home not in places:
+        nearest = min(range(len(places)), key=lambda k: abs(places[k] - home))
+        places[nearest] = home
+    return [int(order[place]) for place in places]
+
+
+def row(view: View, name: str, at: dict[str, int]) -> np.ndarray:
+    """A series at a point."""
+    return np.asarray(view.series[name].isel({dim: at[dim] for dim in view.dims}).values, dtype=float)
+
+
+def together(view: View, names: list[str]) -> words.Scale:
+    """One scale for all series of a panel."""
+    units = view.series[names[0]].attrs.get("units", "1")
+    return words.scale(np.concatenate([view.series[name].values.ravel() for name in names]), units, words.is_temperature(names[0]))
+
+
+def called(view: View, name: str) -> str:
+    """A series in the legend: the probe's name where it has one."""
+    if name in view.probes:
+        return name.removeprefix("temperature_").replace("_", " ")
+    return words.short(view.long_name(name).split(",")[0])
+
+
+def shared_label(view: View, names: list[str]) -> str:
+    """What the series of a panel have in common."""
+    if len(names) == 1:
+        return words.title_case(words.short(view.long_name(names[0])))
+    return words.title_case(names[0].split("_")[0])
+
+
+def calm(ax: Any, values: np.ndarray) -> None:
+    """A series that stays as it is, to round-off, is drawn as a level line, not as noise."""
+    finite = values[np.isfinite(values)]
+    if finite.size and np.ptp(finite) <= 1e-9 * np.abs(finite).max():
+        middle = float(finite.mean())
+        low, high = ax.get_ylim()
+        if high - low < 1e-6 * abs(middle):
+            ax.set_ylim(middle - 0.05 * abs(middle), middle + 0.05 * abs(middle))
+
+
+def stopped(ax: Any, view: View, at: dict[str, int], time: np.ndarray, values: np.ndarray, colour: Any) -> bool:
+    """Mark where the series of a point that is not ok ends; whether it did."""
+    known = np.flatnonzero(np.isfinite(values))
+    if view.ok[tuple(at[dim] for dim in view.dims)] or not len(known):
+        return False
+    ax.plot(time[known[-1]], values[known[-1]], "x", color=colour, ms=7, mew=1.8, zorder=5)
+    return True
+
+
+def levels(ax: Any, view: View, name: str) -> None:
+    """A thin line at each threshold of a probe."""
+    for _, celsius in view.thresholds(name):
+        ax.axhline(celsius, color=QUIET, lw=0.8, ls=(0, (1, 2)), zorder=1)
+        ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), xycoords=("axes fraction", "data"), xytext=(4, 3), textcoords="offset points", color=QUIET, fontsize=8.5)
+
+
+def crossings(ax: Any, view: View, name: str, at: dict[str, int], clock: words.Scale, colour: Any) -> None:
+    """A ring where a line crosses a threshold, at the time that the run found."""
+    for final, celsius in view.thresholds(name):
+        when = float(view.root[final].isel({dim: at[dim] for dim in view.dims}).values)
+        if np.isfinite(when):
+            ax.plot(clock(when), celsius, "o", color=colour, mfc="white", mew=1.5, ms=5.5, zorder=5)
+
+
+def measured(ax: Any, view: View, name: str, index: int, clock: words.Scale, scale: words.Scale, colour: Any) -> Any:
+    """The measured curve of a series as dots, and its legend entry."""
+    found = view.measured(name)
+    if found is None:
+        return None
+    times, values, _ = found
+    style = {"marker": DOTS[index % len(DOTS)], "ls": "None", "color": colour, "mfc": "white", "mec": colour, "mew": 1.3, "ms": 5.5}
+    ax.plot(clock(times), scale(values), **{**style, "mfc": FAINT}, zorder=6)
+    return Line2D([], [], **{**style, "mfc": FAINT}, label=f"{called(view, name)}, measured")
+
+
+def agreement(view: View, names: list[str], at: dict[str, int]) -> str:
+    """`Root mean square from measured: centre 2.1 °C, crust 4.3 °C`; empty without measured curves."""
+    index, told = tuple(at[dim] for dim in view.dims), []
+    for name in names:
+        fit = view.misfit(name)
+        if fit is not None and np.isfinite(fit[index]):
+            units = "°C" if words.is_temperature(name) else words.units_text(view.series[name].attrs.get("units", "1"))
+            told.append(f"{called(view, name)} {fit[index]:.2g} {units}".strip())
+    return "root mean square from measured: " + ", ".join(told) if told else ""

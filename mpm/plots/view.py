@@ -1,0 +1,264 @@
+"""What a dataset holds, as figures ask for it: swept axes, observables in order of interest, failures by reason, measured curves."""
+
+import json
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mpm.plots import words
+from mpm.plots.style import OKABE_ITO, ordered
+from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, dataset_name, describe, threshold
+
+BOOKKEEPING = ("status", "error", "outcome", "run_id", "steps", "wall_time", "attempts")
+LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A swept dimension: where its values lie on a figure and how they are called. Infinity lies one step past the largest number."""
+
+    name: str
+    dim: str
+    values: np.ndarray
+    label: str
+    title: str
+    units: str
+    log: bool
+    category: bool
+    positions: np.ndarray = field(repr=False)
+
+    @classmethod
+    def of(cls, coordinate: Any, dim: str) -> "Axis":
+        """The axis of a coordinate along `dim`."""
+        name, raw, attrs = str(coordinate.name), coordinate.values, coordinate.attrs
+        path, units = attrs.get("config_path", ""), attrs.get("units", "1")
+        if raw.dtype.kind not in "fiu":
+            values = np.array([str(value) for value in raw], dtype=object)
+            label = words.compose(path or name, attrs.get("long_name", name), "")
+            return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
+        scale = words.scale(raw, units, words.is_temperature_path(path))
+        values = scale(raw)
+        log = log_spaced(values)
+        letter = words.symbol(name)
+        title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
+        return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return len(self.values)
+
+    def colours(self) -> list[Any]:
+        """A colour a value: in order for numbers, apart for kinds."""
+        return [OKABE_ITO[i % len(OKABE_ITO)] for i in range(self.size)] if self.category else [ordered(self.size)[rank] for rank in self.ranks()]
+
+    def ranks(self) -> np.ndarray:
+        """Place of each value in ascending order."""
+        return np.argsort(np.argsort(self.positions, kind="stable"), kind="stable")
+
+    def text(self, index: int) -> str:
+        """A value in words."""
+        return words.number(self.values[index])
+
+    def says(self, index: int) -> str:
+        """`κ = 0.35 W/m/K`."""
+        return f"{words.symbol(self.name) or self.name.rsplit('.', 1)[-1]} = {self.text(index)} {self.units}".strip()
+
+    def apply(self, ax: Any) -> None:
+        """Scale, ticks and label of the horizontal axis."""
+        if self.log:
+            ax.set_xscale("log")
+        if self.size <= 9 or self.category or not np.isfinite(self.values).all():
+            chosen = spread(self.size, 12)
+            ax.set_xticks(self.positions[chosen], [self.text(i) for i in chosen])
+            ax.minorticks_off()
+        ax.set_xlabel(self.label)
+
+
+def log_spaced(values: np.ndarray) -> bool:
+    """Whether values want a logarithmic axis: evenly spaced in the logarithm, or spanning a wide range."""
+    finite = np.unique(values[np.isfinite(values)])
+    if len(finite) < 2 or finite[0] <= 0:
+        return False
+    steps = np.diff(np.log(finite))
+    even = len(finite) > 2 and np.ptp(steps) < 0.02 * steps.mean() and finite[-1] / finite[0] > 3
+    return bool(even or finite[-1] / finite[0] > LOG_RATIO)
+
+
+def placed(values: np.ndarray, log: bool) -> np.ndarray:
+    """Positions on the axis; an infinite value lies one step past the largest finite one."""
+    finite = np.unique(values[np.isfinite(values)])
+    if len(finite) == len(np.unique(values)):
+        return values
+    if not len(finite):
+        return np.arange(len(values), dtype=float)
+    if log:
+        past = finite[-1] * (finite[-1] / finite[-2] if len(finite) > 1 else 10.0)
+    else:
+        past = finite[-1] + (finite[-1] - finite[-2] if len(finite) > 1 else 1.0)
+    return np.where(np.isfinite(values), values, past)
+
+
+def spread(size: int, most: int) -> list[int]:
+    """At most `most` indices, evenly spread, ends included."""
+    return list(range(size)) if size <= most else sorted({round(float(i)) for i in np.linspace(0, size - 1, most)})
+
+
+class View:
+    """A dataset tree as figures see it."""
+
+    def __init__(self, tree: Any):
+        self.root = tree.to_dataset()
+        self.groups = {name: tree[name].to_dataset() for name in ("series", "grid", "particles") if name in tree.children}
+        self.series = self.groups.get("series")
+        self.config = json.loads(self.root.attrs.get("config_resolved") or "{}")
+        self.dims = tuple(str(dim) for dim in self.root["status"].dims)
+        self.sizes = {dim: self.root.sizes[dim] for dim in self.dims}
+
+    @property
+    def title(self) -> str:
+        """The dataset's title, and whether it is a smoke run."""
+        title = self.root.attrs.get("title") or self.root.attrs.get("name") or "mpm"
+        return f"{title} (smoke run: coarse and short)" if str(self.root.attrs.get("smoke", "")).lower() in ("true", "1") else title
+
+    @cached_property
+    def axes(self) -> list[Axis]:
+        """Swept dimensions with values of their own, more than one value each."""
+        return [Axis.of(self.root[dim], dim) for dim in self.dims if dim in self.root.coords and self.sizes[dim] > 1]
+
+    @cached_property
+    def design(self) -> str | None:
+        """The dimension of a sample or of a list of points."""
+        return next((dim for dim in self.dims if dim not in self.root.coords and self.sizes[dim] > 1), None)
+
+    @cached_property
+    def parameters(self) -> list[Axis]:
+        """What a sample varies, then the axes beside it."""
+        rows = [row for name, row in self.root.coords.items() if row.dims == (self.design,) and row.dtype.kind in "fiu"]
+        return [Axis.of(row, str(self.design)) for row in rows if len(np.unique(row.values)) > 1] + [axis for axis in self.axes if not axis.category]
+
+    @cached_property
+    def status(self) -> np.ndarray:
+        """Status of every point."""
+        return np.asarray(self.root["status"].values)
+
+    @property
+    def ok(self) -> np.ndarray:
+        """Points that are ok."""
+        return self.status == OK
+
+    @cached_property
+    def reasons(self) -> np.ndarray:
+        """Why a point has no numbers, by point; empty where it is ok or was dropped by `where`."""
+        errors = np.broadcast_to(self.root["error"].values if "error" in self.root else np.array(""), self.status.shape)
+        found = np.empty(self.status.shape, dtype=object)
+        for index, status in np.ndenumerate(self.status):
+            bare = status in (OK, SKIPPED) or not 0 <= status < len(STATUS)
+            found[index] = "" if bare else STATUS[status] if status == PENDING else words.reason(STATUS[status], str(errors[index]))
+        return found
+
+    def counted_reasons(self) -> dict[str, int]:
+        """Reasons and how many points have them, the commonest first."""
+        names, counts = np.unique([text for text in self.reasons.ravel() if text], return_counts=True)
+        return {str(names[i]): int(counts[i]) for i in np.argsort(-counts, kind="stable")}
+
+    @cached_property
+    def listed(self) -> list[str]:
+        """Dataset names of the observables that the config lists."""
+        return [dataset_name(name) for name in (self.config.get("output") or {}).get("observables") or []]
+
+    @cached_property
+    def probes(self) -> list[str]:
+        """Series of temperatures at probes."""
+        names = [f"temperature_{probe}" for probe in (self.config.get("output") or {}).get("probes") or {}]
+        if self.series is None:
+            return []
+        return [name for name in names if name in self.series] or [
+            str(name) for name in self.series.data_vars if str(name).startswith("temperature_") and str(name).split("_")[-1] not in ("mean", "min", "max")
+        ]
+
+    @cached_property
+    def finals(self) -> list[str]:
+        """Finals with a number somewhere, the most interesting first: errors, times, what the config lists, probes, the rest."""
+        names = [str(name) for name, row in self.root.data_vars.items() if name not in BOOKKEEPING and row.dims == self.dims and row.dtype.kind in "fiu"]
+        there = [name for name in names if np.isfinite(self.root[name].values).any()]
+        wanted = ["error_l2", *(name for name in there if name.startswith("time_to_")), *self.listed, *self.probes, *there]
+        return [name for name in dict.fromkeys(wanted) if name in there]
+
+    def label(self, name: str, units: str) -> str:
+        """The axis label of a variable in the units shown."""
+        return words.with_units(words.title_case(words.short(self.long_name(name))), units)
+
+    def long_name(self, name: str) -> str:
+        """The long name that the dataset gives, else that of the table of variables."""
+        for group in (self.root, self.series):
+            if group is not None and name in group and group[name].attrs.get("long_name"):
+                return str(group[name].attrs["long_name"])
+        try:
+            return describe(name).long_name
+        except KeyError:
+            return name.replace("_", " ")
+
+    def scale(self, name: str, group: Any = None) -> words.Scale:
+        """How to show a variable."""
+        row = (self.root if group is None else group)[name]
+        return words.scale(row.values, row.attrs.get("units", "1"), words.is_temperature(name))
+
+    def thresholds(self, probe: str) -> list[tuple[str, float]]:
+        """Finals `time_to_<probe>_...` of a probe's series, each with its temperature in degrees Celsius."""
+        found = [(str(name), threshold(str(name))) for name in self.root.data_vars]
+        return [(name, row.kelvin - words.KELVIN) for name, row in found if row is not None and f"temperature_{row.probe}" == probe]
+
+    def measured(self, name: str) -> tuple[np.ndarray, np.ndarray, str] | None:
+        """Times [s], values and source of the measured curve of a series; None where there is none."""
+        row = None if self.series is None else self.series.get(f"measured_{name}")
+        if row is None or row.ndim != 1:
+            return None
+        times, values = np.asarray(self.series[row.dims[0]].values, dtype=float), np.asarray(row.values, dtype=float)
+        known = np.isfinite(times) & np.isfinite(values)
+        return (times[known], values[known], str(row.attrs.get("source", ""))) if known.any() else None
+
+    def misfit(self, name: str) -> np.ndarray | None:
+        """Root-mean-square difference from the measured curve, by point, over the times that the run covers; NaN where a point is not ok."""
+        found = self.measured(name)
+        if found is None or name not in self.series:
+            return None
+        times, values, _ = found
+        time = np.asarray(self.series["time"].values, dtype=float)
+        inside = (times >= time[0]) & (times <= time[-1])
+        if not inside.any():
+            return None
+        rows = self.series[name].transpose(*self.dims, "time").values.reshape(-1, len(time))
+        gaps = [np.sqrt(np.mean((np.interp(times[inside], time, row) - values[inside]) ** 2)) for row in rows]
+        return np.where(self.ok, np.array(gaps).reshape(self.status.shape), np.nan)
+
+    @cached_property
+    def chosen(self) -> dict[str, int]:
+        """The point that stands for the sweep: nearest to the measured curves, else the middle, moved to the nearest point that is ok."""
+        fits = [fit for fit in (self.misfit(name) for name in self.series_names()) if fit is not None]
+        if fits:
+            total = np.sqrt(np.mean(np.square(fits), axis=0))
+            if np.isfinite(total).any():
+                return dict(zip(self.dims, map(int, np.unravel_index(np.nanargmin(total), total.shape)), strict=True))
+        middle = np.array([(size - 1) // 2 for size in self.sizes.values()])
+        candidates = np.argwhere(self.ok)
+        if len(candidates):
+            middle = candidates[np.argmin(np.abs(candidates - middle).sum(axis=1))]
+        return dict(zip(self.dims, map(int, middle), strict=True))
+
+    def series_names(self) -> list[str]:
+        """Series with a number somewhere, probes first, then what the config lists; all of them where it lists nothing."""
+        if self.series is None:
+            return []
+        there = [str(name) for name, row in self.series.data_vars.items() if "time" in row.dims and np.isfinite(row.values).any()]
+        wanted = [name for name in dict.fromkeys([*self.probes, *self.listed]) if name in there]
+        return wanted or there
+
+    def families(self) -> list[list[str]]:
+        """Series that share a panel: of one family and one unit, as energies or temperatures do."""
+        found: dict[tuple[str, str], list[str]] = {}
+        for name in self.series_names():
+            found.setdefault((name.split("_")[0], self.series[name].attrs.get("units", "1")), []).append(name)
+        return list(found.values())

@@ -1,0 +1,130 @@
+"""Words on figures: symbols, units, numbers, and the unit that a reader wants (minutes, millimetres, degrees Celsius)."""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+KELVIN = 273.15
+SYMBOLS = {"kappa": "κ", "beta": "β", "alpha": "α", "eta": "η", "p0": "p₀", "nu": "ν", "mu": "μ", "lam": "λ"}
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_TEMPERATURES = ("temperature", "outside", "reference", "at")  # last words of config paths that name a temperature, not a difference
+
+
+@dataclass(frozen=True)
+class Scale:
+    """From what a dataset holds to what a figure shows: `shown = stored * factor + shift`, in `units`."""
+
+    factor: float = 1.0
+    shift: float = 0.0
+    units: str = ""
+
+    def __call__(self, values: Any) -> np.ndarray:
+        return np.asarray(values, dtype=float) * self.factor + self.shift
+
+
+def units_text(units: str) -> str:
+    """`W/m2/K` -> `W/m²/K`, `Pa*s` -> `Pa s`, `1` -> nothing."""
+    if units in ("1", ""):
+        return ""
+    plain = units.replace("**", "").replace("^", "").replace("*", " ")
+    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_RAISED), plain)
+
+
+def scale(values: Any, units: str, temperature: bool = False) -> Scale:
+    """The unit in which `values` read best. Kelvin become degrees Celsius only where they are a temperature: an error in kelvin stays."""
+    if temperature and units == "K":
+        return Scale(1.0, -KELVIN, "°C")
+    finite = np.abs(np.asarray(values, dtype=float))
+    finite = finite[np.isfinite(finite)]
+    top = float(finite.max()) if finite.size else 0.0
+    steps = {
+        "s": ((3 * 3600.0, 1 / 3600, "h"), (599.0, 1 / 60, "min"), (0.05, 1.0, "s"), (5e-5, 1e3, "ms"), (0.0, 1e6, "µs")),
+        "m": ((0.2, 1.0, "m"), (2e-4, 1e3, "mm"), (0.0, 1e6, "µm")),
+        "Pa": ((1e6, 1e-6, "MPa"), (2e3, 1e-3, "kPa"), (0.0, 1.0, "Pa")),
+    }
+    if top > 0 and units in steps:
+        _, factor, name = next(step for step in steps[units] if top > step[0])
+        return Scale(factor, 0.0, name)
+    return Scale(units=units_text(units))
+
+
+def is_temperature(name: str) -> bool:
+    """Whether a variable is an absolute temperature, which figures show in degrees Celsius."""
+    return re.match(r"(measured_)?temperature", name) is not None
+
+
+def is_temperature_path(path: str) -> bool:
+    """Whether a config path names an absolute temperature."""
+    return path.rsplit(".", 1)[-1] in _TEMPERATURES
+
+
+def number(value: Any) -> str:
+    """Three significant digits, without an exponent where that reads well; text as it is, shortened."""
+    if isinstance(value, str):
+        return value if len(value) <= 28 else value[:27] + "…"
+    value = float(value)
+    if math.isnan(value):
+        return "nan"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if -3 <= magnitude < 6:
+        digits = max(0, 2 - magnitude)
+        text = f"{round(value, 2 - magnitude):.{digits}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+    else:
+        mantissa, exponent = f"{value:.2e}".split("e")
+        mantissa = mantissa.rstrip("0").rstrip(".")
+        text = ("" if mantissa == "1" else f"{mantissa}·") + "10" + str(int(exponent)).translate(_RAISED)
+    return text.replace("-", "−")
+
+
+def symbol(name: str) -> str:
+    """The letter of a parameter, from its short name or its path; empty where it has none."""
+    word = name.rsplit(".", 1)[-1]
+    return SYMBOLS.get(word, word if len(word) <= 2 else "")
+
+
+def short(long_name: str) -> str:
+    """A long name without its afterthoughts: up to the first semicolon, colon or bracket."""
+    return re.split(r"[;:(]", long_name)[0].strip()
+
+
+def title_case(text: str) -> str:
+    """The first letter large, unless it is a symbol of its own (`x of the material`)."""
+    return text[:1].upper() + text[1:] if len(text.split(" ")[0]) > 1 else text
+
+
+def with_units(text: str, units: str) -> str:
+    """`text [units]`."""
+    return f"{text} [{units}]" if units else text
+
+
+def reason(status: str, error: str) -> str:
+    """Why a point has no number, without what differs from point to point: `diverged: det F <= 0`."""
+    text = re.split(r"\s+at particle|\s+at node|,? at t\s*=|, t\s*=|, step \d|\n", error.strip())[0].strip(" ,;")
+    text = text.replace("<=", "≤").replace(">=", "≥")
+    if not text:
+        return status
+    if not text.startswith(status):
+        text = f"{status}: {text}"
+    return text if len(text) <= 60 else text[:59] + "…"
+
+
+def counted(count: int, one: str) -> str:
+    """`1 point`, `3 points`."""
+    return f"{count} {one}" if count == 1 else f"{count} {one}s"
+
+
+def compose(name: str, long_name: str, units: str, mark: Callable[[str], str] = symbol) -> str:
+    """An axis label of a parameter: `Heat conductivity κ [W/m/K]`."""
+    letter, text = mark(name), short(long_name) or name.replace("_", " ")
+    if letter and not text.endswith(f" {letter}"):
+        text = f"{text} {letter}"
+    return with_units(title_case(text), units)
