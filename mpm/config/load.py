@@ -18,6 +18,8 @@ from mpm.config.problems import ConfigError, Problem, brief, listed
 from mpm.config.slots import Path
 from mpm.config.vary import Vary
 
+MOST_SETTINGS = 100
+
 
 def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None = None, smoke: bool = False) -> Experiment:
     """Read and check a config.
@@ -112,8 +114,12 @@ def smoke_settings(root: Node) -> list[Setting]:
 
 def apply(root: Node, wanted: list[Setting], found: list[Problem]) -> None:
     """Set every path; a parameter that is set does not vary any more."""
+    if len(wanted) > MOST_SETTINGS:
+        found.append(root.origin.problem(root.line, root.column, "smoke", f"{len(wanted)} settings", allowed=f"at most {MOST_SETTINGS}"))
+        return
+    names = None
     for name, node, placed in wanted:
-        names = Names(loose(ROOT, root.plain()))
+        names = names or Names(loose(ROOT, root.plain()))
         try:
             path = names.target(name)
         except UnknownName as error:
@@ -126,6 +132,7 @@ def apply(root: Node, wanted: list[Setting], found: list[Problem]) -> None:
         put(root, path, node, ROOT)
         if path[0] != "sweep" and "sweep" in root.value:
             fix(root, path, names)
+        names = None  # what is set may make room for what comes next
 
 
 def fix(root: Node, path: Path, names: Names) -> None:

@@ -16,7 +16,7 @@ from mpm.config.experiment import plain
 from mpm.config.explain import Finding, findings, shown
 from mpm.config.laws import Law
 from mpm.config.names import Names, UnknownName
-from mpm.config.problems import listed
+from mpm.config.problems import MOST_FINDINGS, listed
 from mpm.config.slots import Path, Slot
 
 MOST_PARAMETERS = 100
@@ -76,6 +76,7 @@ class Vary:
     def __init__(self, sweep: Any, names: Names):
         self.sweep, self.names = sweep, names
         self.found: list[Finding] = []
+        self.adapters: dict[Path, TypeAdapter] = {}
 
     def read(self) -> Variation:
         """The groups and the condition."""
@@ -117,13 +118,20 @@ class Vary:
 
     def value(self, parameter: Parameter, value: Any, where: Path) -> Any:
         """A value checked by the parameter's own type, as plain SI data."""
-        slot = parameter.slot
         before = len(self.found)
+        if before > MOST_FINDINGS:
+            return None
         try:
-            checked = adapter(slot).validate_python(value)
+            checked = self.adapter(parameter).validate_python(value)
         except ValidationError as error:
-            self.found += findings(error, slot, where)
+            self.found += findings(error, parameter.slot, where)
         return plain(checked) if len(self.found) == before else None
+
+    def adapter(self, parameter: Parameter) -> TypeAdapter:
+        """The validator of a parameter's values, made once."""
+        if parameter.path not in self.adapters:
+            self.adapters[parameter.path] = adapter(parameter.slot)
+        return self.adapters[parameter.path]
 
     def end(self, parameter: Parameter, value: Any, where: Path, log: bool) -> float:
         """One end of a range, as an SI number."""
