@@ -45,7 +45,7 @@ class Ellipse(Kind):
     M: law("Pa", "yield stress", above=0) = doc(description="von Mises stress at yield without pressure")
     p0: law("", "aspect ratio", above=0) = doc(description="aspect ratio of the ellipse: the yield pressure is p0 M")
     eta: law("Pa*s", "viscosity", least=0) = doc(description="viscosity of the overstress")
-    map: Annotated[Literal["radial"], Choice()] = doc("radial", description="distance from the ellipse that drives the flow")
+    map: Annotated[Literal["radial", "clipped"], Choice()] = doc("radial", description="overstress that drives the flow; clipped: q <= M at any rate")
 
 
 class Fourier(Kind):

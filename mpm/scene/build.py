@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from mpm.boundary import KINDS
-from mpm.materials import Bump, Constant, EllipseRadial, Hencky, Logistic, NoFlow, table
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
 from mpm.observe import Watch
 from mpm.scene.shapes import cells, on_side, shape
 from mpm.simulation import Scene
@@ -128,7 +128,8 @@ def moving_body(experiment, name: str, zero: float) -> Body:
     elastic = elastic_law(material.elastic)
     flow = NoFlow()
     if material.flow is not None:
-        flow = EllipseRadial(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+        ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
+        flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
     thermal, surface, expansion, heating = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating()
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
