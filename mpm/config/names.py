@@ -7,7 +7,7 @@ from mpm.config.base import Kind, Model
 from mpm.config.experiment import Experiment
 from mpm.config.laws import Constant
 from mpm.config.problems import near
-from mpm.config.slots import Path, Slot, leaves
+from mpm.config.slots import Path, Slot, leaves, places
 
 GREEK = {"κ": "kappa", "β": "beta", "α": "alpha", "η": "eta"}
 NOT_VARIED = ("title", "sweep", "smoke")
@@ -59,6 +59,9 @@ class Names:
             raise UnknownName(f"{name!r} could be any of {len(found)} parameters", [self.spoken[path] for path in found])
         wholes = [*self.spoken.values()]
         single = [tail[0] for tail, paths in self.tails.items() if len(tail) == 1 and len(paths) == 1 and not tail[0].isdigit()]
+        elsewhere = [place for place in places(ROOT, parts[0]) if place.split(".")[0] not in NOT_VARIED] if len(parts) == 1 else []
+        if elsewhere:
+            raise UnknownName(f"nothing in this file is called {name!r}; it would be {' or '.join(elsewhere[:3])}", single)
         pool = wholes if len(parts) > 1 else single
         raise UnknownName(f"nothing in this file is called {name[:80]!r}", pool if len(parts) == 1 else self.around(parts), near(".".join(parts), pool))
 

@@ -89,6 +89,23 @@ class Slot:
         return slot
 
 
+def places(slot: Slot, word: str, path: tuple[str, ...] = ()) -> Iterator[str]:
+    """Where in any config a field of this name could stand: `materials.<name>.flow.ellipse.eta`."""
+    if slot.menu:
+        if not slot.note(Law):
+            for name, kind in slot.menu.kinds.items():
+                yield from places(Slot(kind), word, (*path, name))
+    elif slot.model:
+        for name in slot.keys:
+            if name == word:
+                yield ".".join((*path, name))
+            yield from places(slot.step(name), word, (*path, name))
+    elif get_origin(slot.type) is dict:
+        yield from places(slot.step(""), word, (*path, "<name>"))
+    elif get_origin(slot.type) is tuple and get_args(slot.type):
+        yield from places(slot.step(0), word, (*path, "<n>"))
+
+
 def leaves(slot: Slot, value: Any, path: Path = ()) -> Iterator[tuple[Path, Slot]]:
     """Every path of a validated model that holds one value: numbers, words, laws (whole, and their entries), kinds."""
     if slot.menu:

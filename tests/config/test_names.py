@@ -37,7 +37,8 @@ def test_flow_names(block, name, path):
     [
         ("temperature", "could be any of 2 parameters", ""),
         ("kapa", "nothing in this file is called", "'kappa'"),
-        ("eta", "nothing in this file is called", "'beta'"),
+        ("η", r"nothing in this file is called 'η'; it would be materials.<name>.flow.ellipse.eta", ""),
+        ("every.", "nothing in this file is called", ""),
         ("materials.dough.heat.fourier.kapa", "nothing in this file is called", "'materials.dough.heat.fourier.kappa'"),
         ("title", "nothing in this file is called", ""),
         ("sweep.axes", "nothing in this file is called", ""),

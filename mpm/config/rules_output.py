@@ -1,0 +1,102 @@
+"""Rules for the output: probes lie in the domain, observables and fields exist and have their physics, exact solutions their body."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from mpm.config.explain import Finding
+from mpm.config.loose import MISSING, Unknown
+from mpm.config.problems import near
+from mpm.config.rules_scene import heats, moves, plain_names, vector
+
+MOST_SAMPLES = 10**6
+
+
+def clock(experiment: Any) -> Iterator[Finding]:
+    every, end = experiment.output.every, experiment.time.end
+    if every is not None and end / every > MOST_SAMPLES:
+        yield Finding(("output", "every"), f"the series would have {end / every:.3g} samples", f"at least {end / MOST_SAMPLES:g} [s]", given=every)
+    shots = experiment.output.snapshots
+    if shots is not None and end / shots.every > MOST_SAMPLES:
+        yield Finding(
+            ("output", "snapshots", "every"), f"there would be {end / shots.every:.3g} snapshots", f"at least {end / MOST_SAMPLES:g} [s]", given=shots.every
+        )
+
+
+def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
+    path = ("output", "probes", name)
+    yield from plain_names(experiment, "output.probes", [name])
+    wrong = list(vector(experiment, path, point, "a probe"))
+    yield from wrong
+    for index, (x, length) in enumerate(zip(point, experiment.grid.size, strict=False) if not wrong else ()):
+        if not 0 <= x <= length:
+            yield Finding((*path, index), "the probe lies outside the domain", f"0 to {length:g} [m]", given=x)
+
+
+def probes(experiment: Any) -> Iterator[tuple]:
+    yield from list(experiment.output.probes.items())
+
+
+def observables(experiment: Any) -> Iterator[tuple]:
+    physics = (known(heats, experiment), known(moves, experiment))
+    yield from ((index, name, *physics) for index, name in enumerate(experiment.output.observables))
+
+
+def known(question: Callable[[Any], bool], experiment: Any) -> bool:
+    """The answer, and yes where it is not known."""
+    try:
+        return question(experiment)
+    except Unknown:
+        return True
+
+
+def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) -> Iterator[Finding]:
+    from mpm.records.variables import OBSERVABLES, fits, observable_exists, threshold
+
+    path = ("output", "observables", index)
+    if not observable_exists(name):
+        dimension = experiment.grid.dimension
+        allowed = [word for word in OBSERVABLES if dimension is MISSING or fits(word, dimension)] + [
+            "time_to.<probe>.<value>_degC",
+            "time_to.<probe>.<value>_K",
+        ]
+        yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
+        return
+    found = threshold(name)
+    if found is not None:
+        known = experiment.output.probes
+        if found.probe not in known:
+            yield Finding(path, f"there is no probe {found.probe!r}", list(known) or "a probe under output.probes", near(found.probe, known), given=name)
+    elif not fits(name, experiment.grid.dimension):
+        yield Finding(
+            path,
+            f"there is no such direction in dimension {experiment.grid.dimension}",
+            [word for word in OBSERVABLES if fits(word, experiment.grid.dimension)],
+            given=name,
+        )
+    family = name.split(".", maxsplit=1)[0]
+    if family in ("temperature", "heat", "time_to") and not hot:
+        yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
+    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain") and not moving:
+        yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)
+
+
+def snapshots(experiment: Any) -> Iterator[Finding]:
+    from mpm.records.variables import FIELDS_GRID, FIELDS_PARTICLES
+
+    shots = experiment.output.snapshots
+    for key, allowed in (("grid", FIELDS_GRID), ("particles", FIELDS_PARTICLES)) if shots is not None else ():
+        for index, name in enumerate(getattr(shots, key)):
+            if name not in allowed:
+                yield Finding(("output", "snapshots", key, index), "unknown field", list(allowed), near(name, allowed), given=name)
+
+
+def exact(experiment: Any) -> Iterator[Finding]:
+    solution = experiment.exact
+    if solution is None:
+        return
+    known = list(experiment.bodies)
+    path = ("exact", solution.kind, "body")
+    if solution.body is None and len(known) > 1:
+        yield Finding(path, "there are several bodies; say which one", known)
+    elif solution.body is not None and solution.body not in known:
+        yield Finding(path, "there is no such body", known, near(solution.body, known), given=solution.body)
