@@ -44,7 +44,7 @@ class Plain(Reporter):
     def finished(self, label: str, line: dict, again: bool) -> None:
         self.done += not again
         if not self.failures_only or line["status"] != 0:
-            self.write(f"[{self.done}/{self.total}] {told(label, line, again)}")
+            self.write((f"[{self.done}/{self.total}] " if self.total else "") + told(label, line, again))
 
     def note(self, text: str) -> None:
         self.write(text)
@@ -108,7 +108,8 @@ class Single:
 
     def __init__(self, as_json: bool, quiet: bool):
         self.reporter = reporter(as_json, quiet)
-        self.reporter.start(1, 0, 1)
+        if isinstance(self.reporter, Bar):
+            self.reporter.start(1, 0, 1)
         self.stopped = ""
 
     def signal(self, kind: str) -> None:

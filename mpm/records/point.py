@@ -20,7 +20,7 @@ from mpm.records.netcdf import seal, unseal
 from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
-CALLS = "run_id status error outcome steps wall_time attempts source started finished".split()
+LINE = "run_id status error outcome steps wall_time attempts source started finished".split()
 
 
 @dataclass
@@ -51,7 +51,7 @@ class Record:
     @property
     def line(self) -> dict:
         """The summary that the seal carries."""
-        return {name: getattr(self, name) for name in CALLS}
+        return {name: getattr(self, name) for name in LINE}
 
 
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:
