@@ -6,7 +6,7 @@ from typing import Any
 
 from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES
 from mpm.config.explain import Finding
-from mpm.config.loose import MISSING
+from mpm.config.loose import MISSING, Unknown
 from mpm.config.problems import near
 from mpm.config.shapes_fit import misfits, outside
 from mpm.config.slots import Path
@@ -103,8 +103,7 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 
 def anything(experiment: Any) -> Iterator[Finding]:
-    used = [experiment.materials[item.material] for item in experiment.bodies.values() if item.material in experiment.materials]
-    if used and all(item.elastic is None and item.heat is None for item in used):
+    if not moves(experiment) and not heats(experiment):
         yield Finding(("materials",), "no body has any physics, so there is nothing to compute", "an elastic or a heat section", on_key=True)
 
 
@@ -137,14 +136,21 @@ def surface_names(experiment: Any) -> Iterator[Finding]:
             yield Finding(("surfaces", index, "name"), "two surfaces have the same name", "a name of its own", given=item.name)
 
 
+def used(experiment: Any) -> list[Any]:
+    """Materials of all bodies; Unknown if a body names one that is not there, since then nothing can be said of what the bodies do."""
+    if any(item.material not in experiment.materials for item in experiment.bodies.values()):
+        raise Unknown
+    return [experiment.materials[item.material] for item in experiment.bodies.values()]
+
+
 def moves(experiment: Any) -> bool:
     """Whether any body is elastic; a section that is there but wrong counts."""
-    return any(experiment.materials[item.material].elastic is not None for item in experiment.bodies.values() if item.material in experiment.materials)
+    return any(item.elastic is not None for item in used(experiment))
 
 
 def heats(experiment: Any) -> bool:
     """Whether any body has heat."""
-    return any(experiment.materials[item.material].heat is not None for item in experiment.bodies.values() if item.material in experiment.materials)
+    return any(item.heat is not None for item in used(experiment))
 
 
 def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
