@@ -1,7 +1,7 @@
 """Cases: from an experiment with a sweep to its points, each a checked experiment with an id that depends on its content alone.
 
 The product is counted as an integer before anything is built. A point is the resolved config with a few values exchanged, validated whole.
-Cost, measured: see tests/sweep/test_cases.py (10 000 points in under 3 s).
+Cost of 10 000 points, measured on a busy two-core machine: 1.0 s (kappa x beta of the loaf), 2.6 s (five knobs of the slump).
 """
 
 import itertools
