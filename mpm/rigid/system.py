@@ -1,8 +1,8 @@
 """One body's equations: geometry, laws and surroundings gathered, before a method is chosen.
 
 beta = inf becomes a penalty of PENALTY kappa/h: fixed temperature to within h/(PENALTY L) of the temperature difference. Temperatures are kept relative to
-`zero`, the surroundings with the largest beta: heat that flows through a stiff surface is then a small number times a large one, not a
-difference of large ones, and the heat ledger keeps its digits.
+`zero`: the surroundings of the stiffest surface where the Biot number is above 1, so that heat through it is a small number times a large one,
+not a difference of large ones; else the body's start, so that small changes keep their digits. The heat ledger needs both.
 """
 
 import math
@@ -64,14 +64,16 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin) -> System
     data = [body.temperature, *(outside for _, beta, outside in body.surfaces if beta > 0)]
     conductivity = max(value(kappa, t) for t in data)
     betas = [PENALTY * conductivity / h if math.isinf(beta) else beta for beta in betas]
-    zero = body.surfaces[int(np.argmax(betas))][2] if any(betas) else body.temperature
+    depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
+    stiffest = int(np.argmax(betas)) if betas else 0
+    zero = body.surfaces[stiffest][2] if betas and betas[stiffest] * depth > conductivity else body.temperature
     exchange, facing, supply = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size)
     for (_, _, outside), beta, stencil, area in zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=True):
         if beta > 0:
             exchange += beta * stencil
             facing += beta * area
             supply += beta * (outside - zero) * area
-    span = max(max(data) - min(data), 1e-9 * max(map(abs, data)), 1e-30)
+    span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
     return System(
         shaped,

@@ -75,6 +75,9 @@ def make_table(alpha, kappa, zero: float, coldest: float, hottest: float) -> Tab
         tables = [_hermite(at[:, k], at[:, k + 1], step) for k in (0, 2)]
         error = max(np.abs(c[1:-1] @ [1, 0.5, 0.25, 0.125] - middle[:, k]).max() / (np.ptp(at[:, k]) or 1.0) for c, k in zip(tables, (0, 2), strict=True))
         if error <= CLOSE or n >= MOST:
+            here = int(min(max(np.floor(-low / step), 0), n - 1)) + 1
+            for c in tables:  # theta(0) = Pi(0) = 0 to the last bit: a body at rest stays at rest
+                c[:, 0] -= np.polynomial.polynomial.polyval(-low / step - (here - 1), c[here])
             conductivity = float(np.max(np.concatenate([at[:, 3] / at[:, 1], middle[:, 3] / middle[:, 1]])))
             return Table(low, 1 / step, *tables, float(max(at[:, 1].max(), middle[:, 1].max())), conductivity)
         n *= 2
