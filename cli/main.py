@@ -59,8 +59,9 @@ def told(error: Exception) -> int:
     from mpm.sweep.executors import BrokenWorkers
     from mpm.sweep.store import Refused
 
-    config_error = getattr(sys.modules.get("mpm.config"), "ConfigError", ())
-    if isinstance(error, config_error) or isinstance(error, Refused):
+    # named without importing what the command did not need
+    ours = [getattr(sys.modules.get(room), name, None) for room, name in (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"))]
+    if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))
         return 2
     if isinstance(error, BrokenWorkers):

@@ -1,4 +1,4 @@
-"""mpm plot: a figure of a dataset."""
+"""mpm plot: figures of a dataset."""
 
 from pathlib import Path
 from typing import Annotated
@@ -10,12 +10,12 @@ from mpm_cli.talk import say
 
 def plot(
     out: Folder,
-    name: Annotated[str | None, typer.Argument(help="Which figure.  [default: the overview]", show_default=False)] = None,
-    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="PNG or SVG.  [default: OUT/<name>.png]", show_default=False)] = None,
+    names: Annotated[list[str] | None, typer.Argument(metavar="[NAME...]", help="Which figures.  [default: overview]", show_default=False)] = None,
+    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="File of a single figure.", show_default=False)] = None,
+    svg: Annotated[bool, typer.Option("--svg", help="Write OUT/<name>.svg rather than .png.")] = False,
 ) -> None:
-    """Draw a figure of a sweep as PNG or SVG."""
+    """Draw figures of a sweep as PNG or SVG."""
     from mpm.plots import figures
 
-    target = path or out / f"{name or 'overview'}.png"
-    figures(out, name, target)
-    say(str(target))
+    for written in figures(out, names or None, path, svg):
+        say(str(written))

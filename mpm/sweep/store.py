@@ -111,30 +111,37 @@ class Store:
         write_whole(self.out / "experiment.json", json.dumps(new, indent=1, ensure_ascii=False).encode())
 
 
-def flatten(value: Any, path: str = "") -> dict[str, Any]:
-    """A tree of mappings and lists as {path: leaf}; entries of a list by their `name` where they have one, as sweeps call them."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list | tuple) else None
-    if items is None or not value:
-        return {path: value}
-    flat: dict[str, Any] = {}
-    for key, inner in items:
-        said = inner["name"] if isinstance(key, int) and isinstance(inner, dict) and inner.get("name") else key
-        flat |= flatten(inner, f"{path}.{said}" if path else str(said))
-    return flat
+def entries(value: Any) -> dict[str, Any] | None:
+    """Mappings as they are, lists of mappings by their `name` where they have one (as sweeps call them) or their index; None for any other value."""
+    if isinstance(value, dict):
+        return value
+    if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+        return {str(item.get("name") or index): item for index, item in enumerate(value)}
+    return None
 
 
-def differences(old: dict, new: dict, without: set[str]) -> list[str]:
-    """`path: old -> new` for every leaf that differs, less the paths in `without` and what lies under them."""
-    one, two = flatten(old), flatten(new)
+def differences(old: Any, new: Any, without: set[str], path: str = "") -> list[str]:
+    """`path: old -> new` where two trees differ, less the paths in `without`, what lies under them and what they lie in."""
+    if old == new or any(path == w or path.startswith(w + ".") for w in without):
+        return []
+    one, two = entries(old), entries(new)
+    if one is not None and two is not None:
+        told = [differences(one.get(key, ABSENT), two.get(key, ABSENT), without, f"{path}.{key}" if path else key) for key in sorted({*one, *two})]
+        return [line for part in told for line in part]
+    if any(w.startswith(path + ".") for w in without):
+        return []
+    return [f"{path}: {short(old)} -> {short(new)}"]
 
-    def listed(path: str) -> bool:
-        return not any(path == w or path.startswith(w + ".") or w.startswith(path + ".") for w in without)
 
-    def said(flat: dict, path: str) -> str:
-        return json.dumps(flat[path], ensure_ascii=False) if path in flat else "absent"
+ABSENT = object()
 
-    paths = sorted(path for path in {*one, *two} if listed(path) and (path not in one or path not in two or one[path] != two[path]))
-    return [f"{path}: {said(one, path)} -> {said(two, path)}" for path in paths]
+
+def short(value: Any) -> str:
+    """A value in a message."""
+    if value is ABSENT:
+        return "absent"
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 class Lock:

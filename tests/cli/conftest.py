@@ -41,7 +41,7 @@ def mpm(tmp_path, monkeypatch, capsys):
     """Run a command in this process with the fake runner and a figure that is one byte: exit code, stdout, stderr."""
     plots = types.ModuleType("mpm.plots")
     plots.overview = lambda tree, path: path.write_bytes(b"p")
-    plots.figures = lambda out, name, path: path.write_bytes(f"{out} {name}".encode())
+    plots.figures = lambda out, names, path, svg: [Path(path or out / f"{name}.{'svg' if svg else 'png'}") for name in names or ["overview"]]
     monkeypatch.setitem(sys.modules, "mpm.plots", plots)
     monkeypatch.setattr("mpm.sweep.engine.RUNNER", "fake_runner")
     monkeypatch.chdir(tmp_path)

@@ -153,7 +153,8 @@ def test_warmup(mpm, write):
 
 
 def test_plot_schema_info(mpm, write, tmp_path):
-    assert mpm("plot", ".", "curve", "-o", "x.svg") == (0, "x.svg\n", "") and Path("x.svg").read_bytes() == b". curve"
+    assert mpm("plot", ".", "series", "-o", "x.svg") == (0, "x.svg\n", "")
+    assert mpm("plot", "out", "series", "finals", "--svg")[1] == "out/series.svg\nout/finals.svg\n"
     assert "properties" in json.loads(mpm("schema")[1])
     info = mpm.document("info")
     assert info["versions"]["python"] and info["cache"]["folder"] and info["machine"]["cores"] >= 1

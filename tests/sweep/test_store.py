@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from mpm.records.point import Record
-from mpm.sweep.store import Lock, Refused, Store, differences, flatten, owner
+from mpm.sweep.store import Lock, Refused, Store, differences, owner
 
 
 def experiment(**changes):
@@ -66,10 +66,17 @@ def test_a_smoke_folder_gives_way_to_the_full_run_but_not_the_reverse(tmp_path):
         store.claim(experiment(time={"end": 1.0}), [], smoke=True, take_over=False)
 
 
-def test_differences_are_paths():
-    assert flatten({"surfaces": [{"name": "top", "beta": 1}, {"beta": 2}]}) == {"surfaces.top.name": "top", "surfaces.top.beta": 1, "surfaces.1.beta": 2}
-    assert flatten({"a": {"b": [1, {"c": 2}]}, "d": {}}) == {"a.b.0": 1, "a.b.1.c": 2, "d": {}}
-    assert differences({"a": 1, "b": {"c": 1}}, {"a": 2, "b": {"c": 2}}, {"b"}) == ["a: 1 -> 2"]
+@pytest.mark.parametrize("old, new, without, said", [
+    ({"a": 1, "b": {"c": 1}}, {"a": 2, "b": {"c": 2}}, {"b"}, ["a: 1 -> 2"]),
+    ({"b": {"c": 1, "d": 1}}, {"b": {"c": 2, "d": 2}}, {"b.c"}, ["b.d: 1 -> 2"]),
+    ({"b": 0.35}, {"b": {"bump": {"base": 1}}}, {"b.bump.base"}, []),
+    ({"s": [{"name": "top", "beta": 1}, {"beta": 2}]}, {"s": [{"name": "top", "beta": 3}, {"beta": 4}]}, {"s.top.beta"}, ["s.1.beta: 2 -> 4"]),
+    ({"size": [1, 2]}, {"size": [1, 3]}, set(), ["size: [1, 2] -> [1, 3]"]),
+    ({}, {"measured": "x" * 100}, set(), ['measured: absent -> "' + "x" * 76 + "..."]),
+    ({"a": 1}, {"a": 1}, set(), []),
+])  # fmt: skip
+def test_differences_are_paths(old, new, without, said):
+    assert differences(old, new, without) == said
 
 
 def test_one_writer_a_folder_and_the_dead_hold_nothing(tmp_path):
