@@ -16,7 +16,7 @@ class Hencky(Kind):
     """Hencky elasticity: Kirchhoff stress 2 mu eps + lam tr(eps), eps the logarithmic strain. Exactly one pair of moduli: E nu, lam mu, or K mu."""
 
     kind: ClassVar[str] = "hencky"
-    E: law("Pa", "Young's modulus", above=0) | None = doc(None, description="Young's modulus E")
+    E: Modulus | None = doc(None, description="Young's modulus")
     nu: PoissonRatio | None = doc(None, description="Poisson ratio")
     lam: Pressure | None = doc(None, description="first Lamé constant")
     mu: Modulus | None = doc(None, description="shear modulus, second Lamé constant")

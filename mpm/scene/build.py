@@ -92,7 +92,7 @@ def sample(experiment, body):
 def elastic_law(model) -> Hencky:
     """Lame constants of whichever pair was given."""
     if model.E is not None:
-        E = float(model.E.value)
+        E = model.E
         return Hencky(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
     if model.lam is not None:
         return Hencky(model.mu, model.lam)
