@@ -12,9 +12,9 @@ Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the fi
             no point ok       words: how many points, and why
 Marks       a point that is not ok is a cross under the data, its reason in the legend; a threshold that was not reached is a triangle above it
 Units       as stored, but degrees Celsius for temperatures (not for differences), minutes or hours for long times, millimetres for small lengths
-Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_<series>(measured_time)`, for example
-            `measured_temperature_centre` [K], with `units`, `long_name` and, if known, `source`; `measured_time` is its coordinate [s]. One time axis serves all
-            measured curves: NaN where a curve has no value. They have no swept dimensions. The point nearest to all of them is the chosen point.
+Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_temperature_centre(measured_time_centre)` [K], in general
+            `measured_<series>` over a time of its own [s], with `units`, `long_name` and `source`, and without swept dimensions. `/` has `misfit_centre` [K]
+            for it, a number a point; the point with the least misfit is then the chosen point.
 May use     xarray, matplotlib, mpm.records.variables                                    May not  see config, sweep or anything that computes
 To add      a function View -> Figure in layouts.py or a sibling, and a line in `_draw`
 """

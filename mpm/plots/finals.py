@@ -3,12 +3,15 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.transforms import blended_transform_factory
 
 from mpm.plots import words
-from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, legend_below
-from mpm.plots.view import LOG_RATIO, Axis, View
+from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, heading, legend_below, plain_ticks
+from mpm.plots.view import LOG_RATIO, Axis, View, tally
 
 ROW = 0.045  # height of a row of marks, in the panel's height
 MOST_IN_LEGEND = 8
@@ -28,8 +31,8 @@ def slab(view: View, array: np.ndarray, x: Axis, lines: Axis | None, at: dict[st
     return cut if kept.index(lines.dim) < kept.index(x.dim) else cut.T
 
 
-def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], legend: bool = True) -> None:
-    """A final over axis `x`."""
+def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], key: bool = True) -> None:
+    """A final over axis `x`; `key` says which colour is which value."""
     values, colours = table(view, name, x, lines, at), [OKABE_ITO[0]] if lines is None else lines.colours()
     scale = view.scale(name)
     shown, order = scale(values), np.argsort(x.positions, kind="stable")
@@ -38,37 +41,21 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     x.apply(ax)
     ax.set_ylabel(view.label(name, scale.units))
     wide(ax, shown, name)
-    handles = [] if lines is None else keys(ax, lines, colours)
-    handles += marks(ax, view, name, x, lines, at, values, colours)
+    values_key = [] if lines is None or not key else keys(ax, lines, colours)
+    reasons_key = marks(ax, view, name, x, lines, at, values, colours)
     if not np.isfinite(values).any():
         ax.text(0.5, 0.5, "no number here", transform=ax.transAxes, ha="center", color=QUIET)
-    if legend and handles:
-        below(ax, handles, lines)
+    legend_below(ax, [*values_key, *([key] for key in reasons_key)])
 
 
-def below(ax: Any, handles: list[Any], lines: Axis | None) -> None:
-    """Values in one row where they fit, reasons under them."""
-    values = [handle for handle in handles if handle.get_linestyle() != "None"]
-    reasons = [handle for handle in handles if handle.get_linestyle() == "None"]
-    if not reasons:
-        legend_below(ax, values, lines.title if lines else "", min(len(values), 6))
-        return
-    if values:
-        first = legend_below(ax, values, lines.title if lines else "", min(len(values), 6))
-        ax.add_artist(first)
-    drop = -0.17 - (0.13 + 0.055 * ((len(values) - 1) // 6) if values else 0.0)
-    ax.legend(handles=reasons, loc="upper center", bbox_to_anchor=(0.5, drop), ncols=1, handletextpad=0.4)
-
-
-def keys(ax: Any, lines: Axis, colours: list[Any]) -> list[Any]:
-    """Legend entries of the lines; a colour bar where they are many."""
-    if lines.size <= MOST_IN_LEGEND or lines.category:
-        return [Line2D([], [], color=colours[i], marker="o", label=lines.text(i)) for i in np.argsort(lines.ranks())][:20]
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import BoundaryNorm, ListedColormap
-
+def keys(ax: Any, lines: Axis, colours: list[Any]) -> list[list[Any]]:
+    """Rows of legend entries of the lines; a colour bar instead where they are many numbers."""
     rank = np.argsort(lines.ranks())
-    bar = ax.figure.colorbar(ScalarMappable(BoundaryNorm(np.arange(lines.size + 1) - 0.5, lines.size), ListedColormap([colours[i] for i in rank])), ax=ax, pad=0.02)
+    if lines.size <= MOST_IN_LEGEND or lines.category:
+        entries = [heading(lines.title), *(Line2D([], [], color=colours[i], marker="o", label=lines.text(i)) for i in rank)]
+        return [entries]
+    steps = BoundaryNorm(np.arange(lines.size + 1) - 0.5, lines.size)
+    bar = ax.figure.colorbar(ScalarMappable(steps, ListedColormap([colours[i] for i in rank])), ax=ax, pad=0.02)
     ticks = [i for i in range(lines.size) if i % max(1, (lines.size - 1) // 6) == 0]
     bar.set_ticks(ticks, labels=[lines.text(rank[i]) for i in ticks])
     bar.set_label(lines.label)
@@ -81,38 +68,53 @@ def wide(ax: Any, values: np.ndarray, name: str) -> None:
     finite = values[np.isfinite(values)]
     if finite.size and (finite > 0).all() and (name.startswith("error_") or finite.max() / finite.min() > LOG_RATIO):
         ax.set_yscale("log")
+        if finite.min() > 1e-3 and finite.max() < 1e5:
+            plain_ticks(ax.yaxis)
 
 
 def marks(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], values: np.ndarray, colours: list[Any]) -> list[Any]:
     """Crosses for points without a number, in rows under the data, a row a line; triangles above it for a threshold that was not reached."""
     reasons, ok = slab(view, view.reasons, x, lines, at), slab(view, view.ok, x, lines, at)
     late = ok & ~np.isfinite(values)
-    texts, counts = np.unique([text for text in reasons.ravel() if text], return_counts=True)
+    texts = tally(reasons)
     rows_below = [i for i in range(len(values)) if any(reasons[i])]
     rows_above = [i for i in range(len(values)) if late[i].any()]
-    room(ax, len(rows_below), len(rows_above))
+    height = min(ROW, 0.25 / max(1, len(rows_below), len(rows_above)))
+    size = 7 * min(1.0, 0.4 + 0.6 * height / ROW)
+    room(ax, height * (len(rows_below) + 0.6) if rows_below else 0.0, height * (len(rows_above) + 0.6) if rows_above else 0.0)
     place, handles = blended_transform_factory(ax.transData, ax.transAxes), []
-    for mark, text, count in zip(np.resize(MARKS, len(texts)), texts, counts, strict=True):
+    for mark, text, count in zip(np.resize(MARKS, len(texts)), texts, texts.values(), strict=True):
         pending = text == "pending"
         for row, i in enumerate(rows_below):
             here = reasons[i] == text
-            heights = np.full(here.sum(), ROW * (row + 0.8))
-            ax.plot(x.positions[here], heights, "." if pending else mark, color=colours[i], ms=4 if pending else 7, mew=1.8, transform=place, zorder=4)
+            heights = np.full(here.sum(), height * (row + 0.6))
+            ax.plot(x.positions[here], heights, "." if pending else mark, color=colours[i], ms=4 if pending else size, mew=1.8, transform=place, zorder=4)
         label = f"{text} ({words.counted(int(count), 'point')})"
         handles.append(Line2D([], [], color=INK, marker="." if pending else mark, ls="None", ms=4 if pending else 7, mew=1.8, label=label))
     for row, i in enumerate(rows_above):
-        heights = np.full(late[i].sum(), 1 - ROW * (row + 0.6))
-        ax.plot(x.positions[late[i]], heights, "^", mfc="white", color=colours[i], mew=1.4, ms=6, transform=place, zorder=4)
+        heights = np.full(late[i].sum(), 1 - height * (row + 0.6))
+        ax.plot(x.positions[late[i]], heights, "^", mfc="white", color=colours[i], mew=1.4, ms=size - 1, transform=place, zorder=4)
     if rows_above:
-        text = "not reached before the end" if name.startswith("time_to_") else "no value"
-        handles.append(Line2D([], [], color=INK, marker="^", mfc="white", ls="None", mew=1.4, ms=6, label=f"{text} ({words.counted(int(late.sum()), 'point')})"))
+        text = f"{until(view)} ({words.counted(int(late.sum()), 'point')})" if name.startswith("time_to_") else "no value"
+        handles.append(Line2D([], [], color=INK, marker="^", mfc="white", ls="None", mew=1.4, ms=6, label=text))
+    for rows, low in ((len(rows_below), 0.0), (len(rows_above), 1 - height * (len(rows_above) + 0.2))):
+        if rows:
+            ax.add_patch(Rectangle((0.0, low), 1.0, height * (rows + 0.2), transform=ax.transAxes, color="#f1f1f1", lw=0, zorder=0.4))
     return handles
 
 
-def room(ax: Any, below: int, above: int) -> None:
-    """Stretch the vertical axis so that rows of marks do not touch the data."""
+def until(view: View) -> str:
+    """Why a threshold has no time."""
+    if view.series is None or "time" not in view.series:
+        return "not reached"
+    end = float(view.series["time"].values[-1])
+    clock = words.scale(end, "s")
+    return f"not reached within {words.number(float(clock(end)))} {clock.units}"
+
+
+def room(ax: Any, down: float, up: float) -> None:
+    """Stretch the vertical axis so that rows of marks, of these heights in the panel's, do not touch the data."""
     low, high = (transform := ax.yaxis.get_transform()).transform(np.array(ax.get_ylim()))
-    down, up = ROW * (below + 0.6) if below else 0.0, ROW * (above + 0.6) if above else 0.0
     span = (high - low) / max(0.3, 1 - down - up)
     ax.set_ylim(transform.inverted().transform(np.array([low - span * down, high + span * up])))
 
@@ -127,13 +129,13 @@ def errors(ax: Any, view: View, x: Axis, at: dict[str, int]) -> None:
         said = {"error_l2": "root mean square", "error_max": "largest"}[name]
         if x.name in ("cell", "step") and (rate := slope(x.values, values)) is not None:
             said += f", order {rate:.2f}"
-        handles.append(Line2D([], [], color=colour, ls=dash, marker="o", label=said))
+        handles.append(Line2D([], [], color=colour, ls=dash, marker="o", ms=4, label=said))
     x.apply(ax)
     ax.set_ylabel(words.with_units("Error against the exact solution", scale.units))
     every = np.concatenate([table(view, name, x, None, at).ravel() for name in names])
     wide(ax, every, names[0])
-    handles += marks(ax, view, names[0], x, None, at, table(view, names[0], x, None, at), [INK])
-    below(ax, handles, None)
+    reasons = marks(ax, view, names[0], x, None, at, table(view, names[0], x, None, at), [INK])
+    legend_below(ax, [handles, *([key] for key in reasons)])
 
 
 def slope(sizes: np.ndarray, values: np.ndarray) -> float | None:

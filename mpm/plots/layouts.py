@@ -24,33 +24,37 @@ def overview(view: View) -> Any:
 
 def nothing(view: View) -> Any:
     """No point is ok: say so, and why."""
-    fig = figure(view.title, 3.4)
+    fig = figure(view.title, 1.8 + 0.24 * min(len(view.counted_reasons()), 9))
     ax = fig.add_subplot()
     ax.set_axis_off()
     reasons, points = view.counted_reasons(), view.status.size
-    head = "No point has run yet." if set(reasons) <= {"pending"} else f"None of {words.counted(points, 'point')} is ok." if points > 1 else "The point is not ok."
-    ax.text(0.0, 0.9, head, fontsize=13, color=INK, transform=ax.transAxes, va="top")
+    head = f"None of {words.counted(points, 'point')} is ok." if points > 1 else "The point is not ok."
+    if set(reasons) <= {"pending"}:
+        head = "No point has run yet."
+    ax.text(0.0, 0.95, head, fontsize=13, color=INK, transform=ax.transAxes, va="top")
     rows = [f"{count} ×  {text}" for text, count in list(reasons.items())[:8]]
     if len(reasons) > 8:
         rows.append(f"and {len(reasons) - 8} other reasons")
-    ax.text(0.0, 0.72, "\n".join(rows), fontsize=10.5, color=QUIET, transform=ax.transAxes, va="top", linespacing=1.6)
+    under = {"xycoords": "axes fraction", "xytext": (0, -30), "textcoords": "offset points"}
+    ax.annotate("\n".join(rows), (0.0, 0.95), fontsize=10.5, color=QUIET, va="top", linespacing=1.6, **under)
     return fig
 
 
-def arrange(view: View) -> tuple[Axis, Axis | None, list[Axis]]:
-    """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along."""
-    order = sorted(view.axes, key=lambda axis: (axis.category, axis.name not in ("cell", "step"), -axis.size))
+def arrange(view: View, name: str = "") -> tuple[Axis, Axis | None, list[Axis]]:
+    """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along; for errors the cell or the step."""
+    fine = ("cell", "step") if name.startswith("error_") else ()
+    order = sorted(view.axes, key=lambda axis: (axis.category, axis.name not in fine, -axis.size))
     return order[0], order[1] if len(order) > 1 else None, order[2:]
 
 
 def swept(view: View) -> Any:
     """A final over one axis with a line a value of another (a panel a value of a third), beside the series of a few points."""
-    x, lines, rest = arrange(view)
     at, name = dict(view.chosen), view.finals[0]
+    x, lines, rest = arrange(view, name)
     facets = spread(rest[0].size, 3) if rest else [None]
     names = series_of(view)
     count = len(facets) + bool(names)
-    columns = min(count, 2)
+    columns = count if count < 4 else 2
     rows = math.ceil(count / columns)
     fig = figure(view.title, 5.0 * rows if rows > 1 else 5.2)
     grid = fig.subplots(rows, columns, squeeze=False).ravel()
@@ -61,7 +65,7 @@ def swept(view: View) -> Any:
         if name == "error_l2" and lines is None:
             finals.errors(ax, view, x, here)
         else:
-            finals.panel(ax, view, name, x, lines, here)
+            finals.panel(ax, view, name, x, lines, here, key=facet in (None, facets[0]))
         fixed = [axis.says(here[axis.dim]) for axis in rest]
         ax.set_title(", ".join(fixed))
     if len(facets) > 1:
@@ -69,10 +73,9 @@ def swept(view: View) -> Any:
     if names:
         ax, colour = grid[len(facets)], lines or x
         series.panel(ax, view, names, colour, at)
-        fixed = [axis.says(at[axis.dim]) for axis in view.axes if axis is not colour]
-        told = series.agreement(view, names, at)
-        best = ", ".join([*fixed, *([f"{colour.says(at[colour.dim])} has {told}"] if told else [])])
-        ax.set_title(best, fontsize=9.5)
+        ax.set_title(", ".join(axis.says(at[axis.dim]) for axis in view.axes if axis is not colour))
+        if told := series.agreement(view, names, at):
+            series.note(ax, f"{colour.says(at[colour.dim])}, {told}")
     return fig
 
 
@@ -118,9 +121,8 @@ def families(view: View, lines: Axis | None) -> Any:
     at = dict(view.chosen)
     for ax, names in zip(grid, groups, strict=False):
         series.panel(ax, view, names[:5], lines, at)
-        told = series.agreement(view, names, at)
-        if told:
-            ax.set_title(f"{lines.says(at[lines.dim])} has {told}" if lines else words.title_case(told), fontsize=9.5)
+        if told := series.agreement(view, names, at):
+            series.note(ax, f"{lines.says(at[lines.dim])}, {told}" if lines else told)
     for ax in grid[len(groups) :]:
         ax.set_axis_off()
     return fig

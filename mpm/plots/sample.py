@@ -14,7 +14,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from mpm.plots import words
 from mpm.plots.finals import wide
-from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, figure
+from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, figure, plain_ticks
 from mpm.plots.view import Axis, View
 
 FEWEST = 10
@@ -48,6 +48,7 @@ def scatter(view: View, most: int = 3) -> Any:
             ax.tick_params(labelleft=False)
         bars(grid[i, columns], view, parameters, blocks, values, title=i == 0, last=i == len(names) - 1)
     failures(fig, view)
+    fig.align_ylabels(grid[:, 0])
     return fig
 
 
@@ -67,8 +68,9 @@ def spread_over(view: View, axis: Axis) -> np.ndarray:
 
 def dress(ax: Any, view: View, axis: Axis, name: str, scale: words.Scale, values: np.ndarray, first: bool, last: bool) -> None:
     """Scales and labels: units of the observable at the left, of the parameter at the foot."""
-    if axis.log or positive_wide(axis):
+    if axis.log:
         ax.set_xscale("log")
+        plain_ticks(ax.xaxis)
     wide(ax, scale(values), name)
     ax.margins(0.08, 0.12)
     if first:
@@ -78,16 +80,6 @@ def dress(ax: Any, view: View, axis: Axis, name: str, scale: words.Scale, values
     else:
         ax.tick_params(labelbottom=False)
     ax.tick_params(labelsize=8.5)
-
-
-def positive_wide(axis: Axis) -> bool:
-    """Whether a sampled parameter was drawn in the logarithm: its logarithms are more even than its values."""
-    values = np.sort(axis.values[np.isfinite(axis.values)])
-    if len(values) < 8 or values[0] <= 0 or values[-1] / values[0] < 5:
-        return False
-    even = np.linspace(0, 1, len(values))
-    gaps = [np.abs((row - row[0]) / (row[-1] - row[0]) - even).max() for row in (values, np.log(values))]
-    return bool(gaps[1] < gaps[0])
 
 
 def wrapped(text: str, width: int = 24) -> str:
@@ -130,10 +122,9 @@ def bars(ax: Any, view: View, parameters: list[Axis], blocks: list[np.ndarray], 
     ax.axvline(0, color=QUIET, lw=0.8)
     ax.grid(axis="y", visible=False)
     ax.tick_params(labelsize=8.5, labelbottom=last)
-    if title:
-        ax.set_title(f"Rank correlation, n = {count}", fontsize=9.5)
+    ax.set_title(f"Rank correlation, n = {count}" if title else f"n = {count}", fontsize=9.5)
     if last:
-        ax.set_xlabel("Spearman, 95 % bootstrap")
+        ax.set_xlabel("Spearman, 95 % bootstrap", fontsize=9)
     if count < FEWEST:
         ax.text(0, (len(parameters) - 1) / 2, f"{words.counted(count, 'point')}:\ntoo few", ha="center", va="center", color=QUIET, fontsize=9)
         return

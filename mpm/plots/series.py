@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from mpm.plots import words
-from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, legend_below
+from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, heading, legend_below
 from mpm.plots.view import Axis, View, spread
 
 MOST_LINES = 5
@@ -14,7 +14,7 @@ DOTS = ("o", "s", "D", "^", "v")
 TEMPERATURE = "Temperature"
 
 
-def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[str, int], legend: bool = True) -> None:
+def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[str, int]) -> None:
     """Series `names` (one unit) over time; one colour a value of `lines`, one dash a series. Without `lines`, one colour a series."""
     time = np.asarray(view.series["time"].values, dtype=float)
     clock, scale = words.scale(time, "s"), together(view, names)
@@ -36,20 +36,16 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     ax.margins(x=0.01)
     calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]))
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
-    if legend:
-        legend_below(ax, entries(view, names, lines, indices, ended) + dots, lines.title if lines else "", None)
+    kinds = entries(view, names, lines) if len(names) > 1 or dots else []
+    cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
+    values = [] if lines is None else [heading(lines.title), *(Line2D([], [], color=colours[i], label=lines.text(i)) for i in indices)]
+    legend_below(ax, [values, kinds + dots, cross] if len(kinds + dots) < 4 else [values, kinds, dots, cross])
 
 
-def entries(view: View, names: list[str], lines: Axis | None, indices: list[Any], ended: bool) -> list[Any]:
-    """Legend entries of colours, dashes and marks."""
-    if lines is None:
-        found = [Line2D([], [], color=OKABE_ITO[j % len(OKABE_ITO)], label=called(view, name)) for j, name in enumerate(names)]
-        found = found if len(names) > 1 else []
-    else:
-        colours = lines.colours()
-        found = [Line2D([], [], color=colours[i], label=lines.text(i)) for i in indices]
-        found += [Line2D([], [], color=INK, ls=DASHES[j % len(DASHES)], label=called(view, name)) for j, name in enumerate(names) if len(names) > 1]
-    return found + ([Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else [])
+def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
+    """Legend entries of the series: colours, or dashes where colours tell the swept value."""
+    looks = [{"color": OKABE_ITO[j % len(OKABE_ITO)]} if lines is None else {"color": INK, "ls": DASHES[j % len(DASHES)]} for j in range(len(names))]
+    return [Line2D([], [], label=called(view, name), **look) for name, look in zip(names, looks, strict=True)]
 
 
 def picked(lines: Axis, at: dict[str, int]) -> list[int]:
@@ -111,7 +107,8 @@ def levels(ax: Any, view: View, name: str) -> None:
     """A thin line at each threshold of a probe."""
     for _, celsius in view.thresholds(name):
         ax.axhline(celsius, color=QUIET, lw=0.8, ls=(0, (1, 2)), zorder=1)
-        ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), xycoords=("axes fraction", "data"), xytext=(4, 3), textcoords="offset points", color=QUIET, fontsize=8.5)
+        at = {"xycoords": ("axes fraction", "data"), "xytext": (4, 3), "textcoords": "offset points"}
+        ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), color=QUIET, fontsize=8.5, **at)
 
 
 def crossings(ax: Any, view: View, name: str, at: dict[str, int], clock: words.Scale, colour: Any) -> None:
@@ -134,11 +131,17 @@ def measured(ax: Any, view: View, name: str, index: int, clock: words.Scale, sca
 
 
 def agreement(view: View, names: list[str], at: dict[str, int]) -> str:
-    """`Root mean square from measured: centre 2.1 °C, crust 4.3 °C`; empty without measured curves."""
+    """`rms off the measured curve: centre 2.0 K, crust 4.2 K`; empty without measured curves."""
     index, told = tuple(at[dim] for dim in view.dims), []
     for name in names:
         fit = view.misfit(name)
         if fit is not None and np.isfinite(fit[index]):
-            units = "°C" if words.is_temperature(name) else words.units_text(view.series[name].attrs.get("units", "1"))
-            told.append(f"{called(view, name)} {fit[index]:.2g} {units}".strip())
-    return "root mean square from measured: " + ", ".join(told) if told else ""
+            told.append(f"{called(view, name)} {fit[index]:.1f} K")
+    return "rms off the measured curve: " + ", ".join(told) if told else ""
+
+
+def note(ax: Any, text: str) -> None:
+    """A line of small print between the panel and its title."""
+    ax.set_title(ax.get_title(loc="left"), pad=20)
+    at = {"xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
+    ax.annotate(words.title_case(text), (0.0, 1.0), fontsize=8.5, color=QUIET, **at).set_in_layout(False)  # long words must not narrow the panel

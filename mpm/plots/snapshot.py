@@ -84,8 +84,9 @@ def grid(view: View, group: Any) -> Any:
     length = words.scale(np.concatenate([across, up]), "m")
     fig, axes = canvas(view, len(chosen), float(np.ptp(up) / max(np.ptp(across), 1e-300)))
     values = scale(field.transpose("snapshot", *space).values)
+    look = {"cmap": matplotlib.colormaps["inferno"], "shading": "nearest", "rasterized": True, **limits(values[chosen])}
     for ax, i, text in zip(axes, chosen, times, strict=True):
-        image = ax.pcolormesh(length(across), length(up), values[i], cmap=matplotlib.colormaps["inferno"], shading="nearest", rasterized=True, **limits(values[chosen]))
+        image = ax.pcolormesh(length(across), length(up), values[i], **look)
         ax.set(aspect="equal", xlabel=words.with_units(space[1], length.units))
         ax.set_title(text)
         ax.grid(False)
@@ -131,12 +132,12 @@ def particles(view: View, group: Any) -> Any:
     length, scale = words.scale(everything, "m"), words.scale(np.concatenate(values), group[name].attrs.get("units", "1"), words.is_temperature(name))
     low, high = length(everything.min(axis=0)), length(everything.max(axis=0))
     fig, axes = canvas(view, len(chosen), float((high[y] - low[y]) / max(high[x] - low[x], 1e-300)) if flat else 0.6)
-    colours = limits(scale(np.concatenate(values)))
+    look = {"cmap": matplotlib.colormaps["inferno"], "lw": 0, "rasterized": True, **limits(scale(np.concatenate(values)))}
     for ax, place, value, text in zip(axes, points, values, times, strict=True):
         order = np.argsort(-place[:, 1], kind="stable") if everything.shape[1] == 3 else np.arange(len(place))
         size = float(np.clip(9e3 / max(len(place), 1), 1.0, 30.0))
         upward = length(place[order, y]) if flat else scale(value[order])
-        image = ax.scatter(length(place[order, x]), upward, c=scale(value[order]), s=size, lw=0, cmap=matplotlib.colormaps["inferno"], rasterized=True, **colours)
+        image = ax.scatter(length(place[order, x]), upward, c=scale(value[order]), s=size, **look)
         ax.set_title(text)
         ax.set_xlabel(words.with_units("xyz"[x], length.units))
         if flat:

@@ -4,6 +4,7 @@ Figures are made without pyplot: no window, no global state, safe in any process
 """
 
 import contextlib
+import math
 import os
 import secrets
 from collections.abc import Iterator
@@ -13,6 +14,12 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
+
+from mpm.plots.words import number
 
 WIDTH, DPI = 1600 / 150, 150
 FORMATS = (".png", ".svg", ".pdf")
@@ -73,15 +80,59 @@ def figure(title: str, height: float) -> Figure:
 
 def ordered(count: int) -> list[Any]:
     """Colours that keep an order: viridis without its palest end."""
-    return [matplotlib.colormaps["viridis"](value) for value in np.linspace(0.0, 0.86, count) if count] if count > 1 else [OKABE_ITO[0]]
+    return [matplotlib.colormaps["viridis"](value) for value in np.linspace(0.0, 0.84, count)] if count > 1 else [OKABE_ITO[0]]
 
 
-def legend_below(ax: Any, handles: list[Any], title: str = "", columns: int | None = None) -> Any:
-    """A legend under the axis labels, where it covers nothing."""
-    if not handles:
-        return None
-    found = ax.legend(handles=handles, title=title or None, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=columns or min(len(handles), 4), columnspacing=1.4)
-    return found
+def legend_below(ax: Any, rows: list[list[Any]]) -> None:
+    """Legends under the axis label, a row each or more where a row is too wide, where they cover nothing."""
+    room = 0.86 * WIDTH * 72 / ax.get_subplotspec().get_gridspec().ncols
+    for place, handles in enumerate(line for row in rows for line in broken(row, room)):
+        drop = ScaledTranslation(0, -(44 + 16 * place) / 72, ax.figure.dpi_scale_trans)
+        lines = any(handle.get_linestyle() != "None" for handle in handles)
+        found = Legend(
+            ax,
+            handles,
+            [handle.get_label() for handle in handles],
+            loc="upper left",
+            bbox_to_anchor=(0.0, 0.0),
+            bbox_transform=ax.transAxes + drop,
+            ncols=len(handles),
+            handlelength=2.4 if lines else 1.0,
+            columnspacing=1.3,
+            handletextpad=0.6,
+            borderaxespad=0,
+            borderpad=0,
+        )
+        ax.add_artist(found)
+        found.set_clip_on(False)  # else the layout leaves no room for it
+
+
+def broken(row: list[Any], room: float) -> list[list[Any]]:
+    """A row of legend entries in as many as it takes to keep within `room` points."""
+    lines: list[list[Any]] = []
+    left = 0.0
+    for handle in row:
+        width = 5.3 * len(handle.get_label()) + (39 if handle.get_linestyle() != "None" else 24)
+        if not lines or width > left:
+            lines.append([])
+            left = room
+        lines[-1].append(handle)
+        left -= width
+    return lines
+
+
+def plain_ticks(axis: Any) -> None:
+    """Ticks of a logarithmic axis at 1, 2 and 5 where it spans little, in plain numbers where they read well."""
+    low, high = sorted(axis.get_view_interval())
+    decades = math.log10(high / low) if low > 0 else 0.0
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < 1.7 else (1.0,), numticks=12))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def heading(text: str) -> Any:
+    """A legend entry that is words alone: the title of its row."""
+    return Line2D([], [], ls="None", label=text)
 
 
 def save(fig: Figure, path: Path | str) -> Path:

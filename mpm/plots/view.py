@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm.plots import words
-from mpm.plots.style import OKABE_ITO, ordered
+from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
 from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, dataset_name, describe, threshold
 
 BOOKKEEPING = ("status", "error", "outcome", "run_id", "steps", "wall_time", "attempts")
@@ -30,8 +30,8 @@ class Axis:
     positions: np.ndarray = field(repr=False)
 
     @classmethod
-    def of(cls, coordinate: Any, dim: str) -> "Axis":
-        """The axis of a coordinate along `dim`."""
+    def of(cls, coordinate: Any, dim: str, log: bool = False) -> "Axis":
+        """The axis of a coordinate along `dim`; logarithmic where asked, or where the values say so."""
         name, raw, attrs = str(coordinate.name), coordinate.values, coordinate.attrs
         path, units = attrs.get("config_path", ""), attrs.get("units", "1")
         if raw.dtype.kind not in "fiu":
@@ -40,7 +40,7 @@ class Axis:
             return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
         scale = words.scale(raw, units, words.is_temperature_path(path))
         values = scale(raw)
-        log = log_spaced(values)
+        log = log_spaced(values) or (log and (values > 0).all())
         letter = words.symbol(name)
         title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
         return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
@@ -74,6 +74,8 @@ class Axis:
             chosen = spread(self.size, 12)
             ax.set_xticks(self.positions[chosen], [self.text(i) for i in chosen])
             ax.minorticks_off()
+        elif self.log:
+            plain_ticks(ax.xaxis)
         ax.set_xlabel(self.label)
 
 
@@ -104,6 +106,13 @@ def placed(values: np.ndarray, log: bool) -> np.ndarray:
 def spread(size: int, most: int) -> list[int]:
     """At most `most` indices, evenly spread, ends included."""
     return list(range(size)) if size <= most else sorted({round(float(i)) for i in np.linspace(0, size - 1, most)})
+
+
+def tally(reasons: np.ndarray) -> dict[str, int]:
+    """How many points have each reason: the commonest first, what is still to run last."""
+    names, counts = np.unique([text for text in reasons.ravel() if text], return_counts=True)
+    order = sorted(range(len(names)), key=lambda i: (names[i] == STATUS[PENDING], -counts[i]))
+    return {str(names[i]): int(counts[i]) for i in order}
 
 
 class View:
@@ -137,7 +146,10 @@ class View:
     def parameters(self) -> list[Axis]:
         """What a sample varies, then the axes beside it."""
         rows = [row for name, row in self.root.coords.items() if row.dims == (self.design,) and row.dtype.kind in "fiu"]
-        return [Axis.of(row, str(self.design)) for row in rows if len(np.unique(row.values)) > 1] + [axis for axis in self.axes if not axis.category]
+        rows = [row for row in rows if len(np.unique(row.values)) > 1]
+        logs = self.drawn_in_logarithm
+        drawn = [Axis.of(row, str(self.design), bool(logs & {str(row.name), words.symbol(str(row.name)), row.attrs.get("config_path")})) for row in rows]
+        return drawn + [axis for axis in self.axes if not axis.category]
 
     @cached_property
     def status(self) -> np.ndarray:
@@ -161,8 +173,7 @@ class View:
 
     def counted_reasons(self) -> dict[str, int]:
         """Reasons and how many points have them, the commonest first."""
-        names, counts = np.unique([text for text in self.reasons.ravel() if text], return_counts=True)
-        return {str(names[i]): int(counts[i]) for i in np.argsort(-counts, kind="stable")}
+        return tally(self.reasons)
 
     @cached_property
     def listed(self) -> list[str]:
@@ -221,18 +232,9 @@ class View:
         return (times[known], values[known], str(row.attrs.get("source", ""))) if known.any() else None
 
     def misfit(self, name: str) -> np.ndarray | None:
-        """Root-mean-square difference from the measured curve, by point, over the times that the run covers; NaN where a point is not ok."""
-        found = self.measured(name)
-        if found is None or name not in self.series:
-            return None
-        times, values, _ = found
-        time = np.asarray(self.series["time"].values, dtype=float)
-        inside = (times >= time[0]) & (times <= time[-1])
-        if not inside.any():
-            return None
-        rows = self.series[name].transpose(*self.dims, "time").values.reshape(-1, len(time))
-        gaps = [np.sqrt(np.mean((np.interp(times[inside], time, row) - values[inside]) ** 2)) for row in rows]
-        return np.where(self.ok, np.array(gaps).reshape(self.status.shape), np.nan)
+        """Root-mean-square difference of a probe's series from its measured curve, by point; None where the dataset has none."""
+        row = self.root.get(f"misfit_{name.removeprefix('temperature_')}")
+        return None if row is None or row.dims != self.dims else np.asarray(row.values, dtype=float)
 
     @cached_property
     def chosen(self) -> dict[str, int]:
@@ -247,6 +249,12 @@ class View:
         if len(candidates):
             middle = candidates[np.argmin(np.abs(candidates - middle).sum(axis=1))]
         return dict(zip(self.dims, map(int, middle), strict=True))
+
+    @cached_property
+    def drawn_in_logarithm(self) -> set[str]:
+        """Names, as the config has them, of sampled parameters whose range is logarithmic."""
+        sample = (self.config.get("sweep") or {}).get("sample") or {}
+        return {name for design in sample.values() if design for name, span in design["ranges"].items() if isinstance(span, dict) and "log" in span}
 
     def series_names(self) -> list[str]:
         """Series with a number somewhere, probes first, then what the config lists; all of them where it lists nothing."""

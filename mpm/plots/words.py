@@ -92,13 +92,13 @@ def symbol(name: str) -> str:
 
 
 def short(long_name: str) -> str:
-    """A long name without its afterthoughts: up to the first semicolon, colon or bracket."""
-    return re.split(r"[;:(]", long_name)[0].strip()
+    """A long name without its afterthoughts: up to the first semicolon, colon, bracket or weight."""
+    return re.split(r"[;:(]|, weighted", long_name)[0].strip()
 
 
 def title_case(text: str) -> str:
     """The first letter large, unless it is a symbol of its own (`x of the material`)."""
-    return text[:1].upper() + text[1:] if len(text.split(" ")[0]) > 1 else text
+    return text[:1].upper() + text[1:] if len(text.split(" ", maxsplit=1)[0]) > 1 else text
 
 
 def with_units(text: str, units: str) -> str:
