@@ -19,28 +19,22 @@ TURNS, MARGIN = 30, 1.1  # of the power iteration, and over it
 STAGES = 1000  # most a step
 
 
-@kernel
-def spectral_radius(problem, turns):
-    """Of M^-1 (on_potential + on_theta), from below, by `turns` power iterations."""
+def spectral_radius(problem, conductivity: float) -> float:
+    """Of M^-1 (conductivity on_potential + on_theta), from below, by TURNS power iterations."""
     n = len(problem.mass)
-    x, y, z = np.empty(n), np.empty(n), np.zeros(n)
-    for i in range(n):
-        x[i] = 1.0 + 0.37 * np.sin(1.0 + 7.1 * i) if problem.on_theta[0, i] + np.sum(problem.on_potential[:1, i]) != 0 else 0.0
-        x[i] *= 1 - 2 * (i % 2)
+    x, y, z = (1 + 0.37 * np.sin(1 + 7.1 * np.arange(n))) * np.where(np.arange(n) % 2, -1.0, 1.0), np.empty(n), np.zeros(n)
+    x[problem.weight == 0] = 0.0
     largest = 0.0
-    for _ in range(turns):
-        if len(problem.on_potential) > 0:
-            apply(problem.on_potential, problem.diff, x, z)
+    for _ in range(TURNS):
+        size = np.sqrt(problem.weight @ (x * x))
+        if size == 0.0:
+            break
+        x /= size
         apply(problem.on_theta, problem.diff, x, y)
-        top, bottom = 0.0, 0.0
-        for i in range(n):
-            y[i] = (y[i] + z[i]) / problem.mass[i]
-            top += problem.mass[i] * y[i] * y[i]
-            bottom += problem.mass[i] * x[i] * x[i]
-        if bottom == 0.0 or top == 0.0:
-            return largest
-        largest = max(largest, np.sqrt(top / bottom))
-        x[:] = y / np.sqrt(top)
+        if len(problem.on_potential):
+            apply(problem.on_potential, problem.diff, x, z)
+        x = (y + conductivity * z) / problem.mass
+        largest = max(largest, float(np.sqrt(problem.weight @ (x * x))))
     return largest
 
 
@@ -58,10 +52,11 @@ def chebyshev(problem, h, f0, q0, dt, s, new, f1):
     w1 = np.sinh(arg) * t1 / (np.cosh(arg) * s * root - w0 * np.sinh(arg))
     b1 = 1.0 / (2.0 * w0) ** 2
     b2 = b1
-    before, last, after = h.copy(), np.empty(n), np.empty(n)
+    before, last, after = np.empty(n), np.empty(n), np.empty(n)
     theta, work = np.empty(n), np.empty(n)
     mu = w1 * b1 * dt
     for i in range(n):
+        before[i] = h[i]
         last[i] = h[i] + mu * f0[i]
     q_before, q_last = 0.0, mu * q0
     z1, z2, dz1, dz2, d2z1, d2z2 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
@@ -82,7 +77,8 @@ def chebyshev(problem, h, f0, q0, dt, s, new, f1):
         q_before, q_last = q_last, q_after
         b2, b1 = b1, b
         z2, z1, dz2, dz1, d2z2, d2z1 = z1, z, dz1, dz, d2z1, d2z
-    new[:] = last
+    for i in range(n):
+        new[i] = last[i]
     q1 = rate(problem, new, f1, theta, work)
     error = 0.0
     for i in range(n):
@@ -98,8 +94,7 @@ class ChebyshevSteps(Enthalpy):
 
     def __init__(self, system, tolerance: float):
         super().__init__(system, tolerance)
-        hottest = self.problem._replace(on_potential=self.problem.on_potential * self.problem.table.conductivity)
-        self.radius = MARGIN * self.problem.table.steepest * spectral_radius(hottest, TURNS)
+        self.radius = MARGIN * self.problem.table.steepest * spectral_radius(self.problem, self.problem.table.conductivity)
         self.rate = np.empty_like(self.state)
         scratch = np.empty((2, len(self.state)))
         self.taken = rate(self.problem, self.state, self.rate, scratch[0], scratch[1])

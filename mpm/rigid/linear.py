@@ -36,37 +36,45 @@ class Problem(NamedTuple):
 
 
 @kernel
-def stages(problem, band, a, dt, u, k, flux):
-    """Stage slopes k (m, N) and the exchange rate of each stage, by a factor of M + gamma dt A."""
-    y, work = np.empty_like(u), np.empty_like(u)
-    for i in range(len(a)):
-        y[:] = u
-        for j in range(i):
-            y += dt * a[i, j] * k[j]
+def stages(problem, band, a, error, dt, u, k, flux):
+    """Stage slopes k (m, N) and the exchange rate of each stage, by a factor of M + gamma dt A; the square of the filtered error's mass norm."""
+    n, m = len(u), len(a)
+    y, work = np.empty(n), np.empty(n)
+    for i in range(m):
+        for p in range(n):
+            y[p] = u[p]
+            for j in range(i):
+                y[p] += dt * a[i, j] * k[j, p]
         apply(problem.matrix, problem.diff, y, work)
-        k[i] = problem.supply - work
-        back_substitute(band, k[i])
-        flux[i] = problem.received - np.sum(problem.facing * (y + dt * a[i, i] * k[i]))
-        gap = flux[i] - np.sum(problem.weight * k[i])
-        if abs(gap) <= ROUNDOFF * np.sum(problem.weight * np.abs(k[i])):  # more would be an error, and the ledger has to show it
-            gap /= np.sum(problem.weight)
-            for n in range(len(u)):
-                if problem.weight[n] > 0.0:
-                    k[i, n] += gap
-
-
-@kernel
-def estimate(problem, band, weights, k, filters):
-    """The square of the mass norm of the filtered error sum_i weights_i k_i."""
-    error, work = np.zeros_like(k[0]), np.empty_like(k[0])
-    for i in range(len(weights)):
-        error += weights[i] * k[i]
-    for _ in range(filters):
-        apply(problem.mass, problem.diff, error, work)
+        for p in range(n):
+            work[p] = problem.supply[p] - work[p]
         back_substitute(band, work)
-        error[:] = work
-    apply(problem.mass, problem.diff, error, work)
-    return np.sum(error * work)
+        taken, total, size = problem.received, 0.0, 0.0
+        for p in range(n):
+            k[i, p] = work[p]
+            taken -= problem.facing[p] * (y[p] + dt * a[i, i] * work[p])
+            total += problem.weight[p] * work[p]
+            size += problem.weight[p] * abs(work[p])
+        flux[i] = taken
+        if abs(taken - total) <= ROUNDOFF * size:  # more would be an error, and the ledger has to show it
+            gap, whole = taken - total, np.sum(problem.weight)
+            for p in range(n):
+                if problem.weight[p] > 0.0:
+                    k[i, p] += gap / whole
+    for p in range(n):
+        work[p] = 0.0
+        for i in range(m):
+            work[p] += dt * error[i] * k[i, p]
+    square = 0.0
+    for turn in range(FILTERS + 1):
+        for p in range(n):
+            y[p] = work[p]
+        apply(problem.mass, problem.diff, y, work)
+        if turn < FILTERS:
+            back_substitute(band, work)
+    for p in range(n):
+        square += y[p] * work[p]
+    return square
 
 
 class LinearSteps:
@@ -102,9 +110,9 @@ class LinearSteps:
                 self.size = None
                 return np.inf
         k, flux = np.empty((len(tableau.a), len(self.state))), np.empty(len(tableau.a))
-        stages(self.problem, self.band, tableau.a, dt, self.state, k, flux)
+        square = stages(self.problem, self.band, tableau.a, tableau.error, dt, self.state, k, flux)
         self.stages, self.fluxes, self.dt = k, flux, dt
-        return float(np.sqrt(max(estimate(self.problem, self.band, dt * tableau.error, k, FILTERS), 0.0))) / self.allowed
+        return float(np.sqrt(max(square, 0.0))) / self.allowed
 
     def accept(self):
         weights = self.tableau.a[-1]

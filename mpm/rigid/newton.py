@@ -29,7 +29,9 @@ def jacobian(problem, band, h, dt, slope):
     look_up(problem.table, h, theta, potential, slope, conductance)
     for i in range(n):
         root[i] = np.sqrt(max(conductance[i], 0.0) / slope[i])
-    band[:] = 0.0
+    for i in range(n):
+        for k in range(band.shape[1]):
+            band[i, k] = 0.0
     for o in range(len(problem.on_theta)):
         k = problem.diff[o]
         for i in range(n - k):
@@ -39,58 +41,6 @@ def jacobian(problem, band, h, dt, slope):
                 band[i, k] += dt * problem.on_potential[o, i] * root[i] * root[i + k]
     for i in range(n):
         band[i, 0] += problem.mass[i] / slope[i]
-
-
-@kernel
-def norm(problem, r):
-    return np.sqrt(np.sum(problem.mass * r * r))
-
-
-@kernel
-def stage(problem, band, base, dt, allowed, h, f):
-    """Newton for h = base + dt F(h), from the guess h; (iterations or -1, heat taken a second). f: the rate at the last h."""
-    n = len(h)
-    theta, work, slope, r, step, trial = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    taken = rate(problem, h, f, theta, work)
-    r[:] = h - base - dt * f
-    size = norm(problem, r)
-    for count in range(ITERATIONS):
-        if size <= CLOSE * allowed:
-            return count, taken
-        jacobian(problem, band, h, dt, slope)
-        if factorise(band) >= 0:
-            return -1, taken
-        step[:] = problem.mass * r
-        back_substitute(band, step)
-        part = 1.0
-        for _ in range(HALVINGS):
-            trial[:] = h - part * step / slope
-            taken = rate(problem, trial, f, theta, work)
-            r[:] = trial - base - dt * f
-            new = norm(problem, r)
-            if new < size:
-                break
-            part *= 0.5
-        if not new < size:
-            return -1, taken
-        h[:], size = trial, new
-    return -1, taken
-
-
-@kernel
-def step(problem, band, a, dt, h, allowed, f, q):
-    """Rates f (m, N) and heats q (m,) of all stages; Newton iterations, or -1."""
-    guess, base = h.copy(), np.empty_like(h)
-    total = 0
-    for i in range(len(a)):
-        base[:] = h
-        for j in range(i):
-            base += dt * a[i, j] * f[j]
-        count, q[i] = stage(problem, band, base, dt * a[i, i], allowed, guess, f[i])
-        if count < 0:
-            return -1
-        total += count
-    return total
 
 
 class NewtonSteps(Enthalpy):
@@ -109,15 +59,48 @@ class NewtonSteps(Enthalpy):
     def first_size(self, end: float) -> float:
         return min(end, self.floor) if self.floor > 0 else end
 
+    def stage(self, base, dt: float, h, f):
+        """Newton for h = base + dt F(h) from the guess h: (h, heat taken in a second) with f = F(h), or None where it does not converge."""
+        problem, work = self.problem, np.empty((3, len(h)))
+        theta, scratch, slope = work
+        taken = rate(problem, h, f, theta, scratch)
+        residual = h - base - dt * f
+        size = self.norm(residual)
+        for _ in range(ITERATIONS):
+            if size <= CLOSE * self.allowed:
+                return h, taken
+            jacobian(problem, self.band, h, dt, slope)
+            if factorise(self.band) >= 0:
+                return None
+            self.iterations += 1
+            step = problem.mass * residual
+            back_substitute(self.band, step)
+            step /= slope
+            for halving in range(HALVINGS):
+                trial = h - step / 2**halving
+                taken = rate(problem, trial, f, theta, scratch)
+                residual = trial - base - dt * f
+                new = self.norm(residual)
+                if new < size:
+                    break
+            else:
+                return None
+            h, size = trial, new
+        return None
+
+    def norm(self, residual) -> float:
+        return float(np.sqrt(self.weight @ (residual * residual)))
+
     def attempt(self, dt: float) -> float:
-        f, q = np.empty((len(self.tableau.a), len(self.state))), np.empty(len(self.tableau.a))
-        count = step(self.problem, self.band, self.tableau.a, dt, self.state, self.allowed, f, q)
-        if count < 0:
-            return np.inf
-        self.iterations += count
+        a = self.tableau.a
+        f, q, guess = np.empty((len(a), len(self.state))), np.empty(len(a)), self.state
+        for i, row in enumerate(a):
+            found = self.stage(self.state + (dt * row[:i]) @ f[:i], dt * row[i], guess, f[i])
+            if found is None:
+                return np.inf
+            guess, q[i] = found
         self.rates, self.taken, self.dt = f, q, dt
-        error = (dt * self.tableau.error) @ f
-        return float(np.sqrt(np.sum(self.weight * error * error))) / self.allowed
+        return self.norm((dt * self.tableau.error) @ f) / self.allowed
 
     def accept(self):
         weights = self.dt * self.tableau.a[-1]

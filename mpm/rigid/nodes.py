@@ -83,8 +83,8 @@ def assemble(nodes, d, x, w, cell, counts, with_gradient, mass, stiffness):
                             mass[o, i] += element[a, b]
                             if with_gradient:
                                 stiffness[o, i] += gradient[a, b]
-                element[:] = 0.0
-                gradient[:] = 0.0
+                        element[a, b] = 0.0
+                        gradient[a, b] = 0.0
             if q == len(w):
                 break
             last = cell[q]
@@ -97,7 +97,7 @@ def assemble(nodes, d, x, w, cell, counts, with_gradient, mass, stiffness):
         for k in range(d):
             spline((x[q, k] - nodes.origin[k]) / nodes.h - (nodes.first[k] + 1 + at[k]), n, dn, k)
         for a in range(m):
-            i, j, k = nodes.local[a]
+            i, j, k = nodes.local[a, 0], nodes.local[a, 1], nodes.local[a, 2]
             value[a] = n[0, i] * n[1, j] * n[2, k]
             slope[a, 0] = dn[0, i] * n[1, j] * n[2, k]
             slope[a, 1] = n[0, i] * dn[1, j] * n[2, k]
@@ -127,7 +127,7 @@ def evaluate(nodes, d, x):
             spline(f - at, n, dn, k)
             base += (at - 1) * nodes.stride[k]
         for a in range(m):
-            i, j, k = nodes.local[a]
+            i, j, k = nodes.local[a, 0], nodes.local[a, 1], nodes.local[a, 2]
             index[p, a] = base + i * nodes.stride[0] + j * nodes.stride[1] + k * nodes.stride[2]
             value[p, a] = n[0, i] * n[1, j] * n[2, k]
     return index, value
