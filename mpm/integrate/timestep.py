@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm.integrate.respond import RATE, SPEED, STRAIN, SWELL
-from mpm.materials import moduli, value
+from mpm.materials import Constant, moduli, value
 from mpm.state import Expansion, Heating, Thermal
 
 WAVE, CONDUCTION, EXCHANGE, PACE = 0.5, 0.4, 2.0, 0.15
@@ -61,8 +61,9 @@ def limits(space, D, bodies, reports) -> Limits:
         if isinstance(body.thermal, Thermal):
             kappa, alpha = conductance(body.thermal)
             J = max(report[SWELL], float(np.max(body.particles.J)))
-            keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
-            pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
+            if kappa > 0:
+                keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
+                pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
             beta = getattr(body.surface, "beta", np.zeros(0))
             if beta.size and beta.max() > 0:
                 keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * float(beta.max()) * max(J, 1.0)))
@@ -79,6 +80,8 @@ def coupling(body, lam, mu, R0) -> float:
 
 def conductance(thermal) -> tuple[float, float]:
     """Largest kappa and smallest alpha among the particles' temperatures."""
+    if isinstance(thermal.kappa, Constant) and isinstance(thermal.alpha, Constant):  # every heat step asks: no need to look at temperatures
+        return thermal.kappa.constant, thermal.alpha.constant
     low, high = float(np.min(thermal.theta)) + thermal.zero, float(np.max(thermal.theta)) + thermal.zero
     between = np.linspace(low, high, 33)
     return max(value(thermal.kappa, t) for t in between), min(value(thermal.alpha, t) for t in between)
