@@ -4,26 +4,27 @@ theta = out + (hot - out) sum C_n exp(-z_n^2 Fo) J0(z_n r/R),  z J1(z) = Bi J0(z
 Order   2 in the cell (declared 1.7)
 """
 
+import functools
 import math
 
 import numpy as np
 
-from mpm.verification.setup import constants, moved, one_exchange, only_body, series
+from mpm.verification.setup import bisected, constants, moved, one_exchange, only_body, series
 
 ORDER = 1.7
 TERMS = 200
 
 
+@functools.lru_cache(maxsize=64)
 def roots(Bi: float, terms: int = TERMS) -> np.ndarray:
     """z J1(z) = Bi J0(z), one root between neighbouring zeros of J1 and J0."""
-    from scipy.optimize import brentq
     from scipy.special import j0, j1, jn_zeros
 
     highs = jn_zeros(0, terms)
     if math.isinf(Bi):
         return highs
     lows = np.concatenate([[0.0], jn_zeros(1, terms - 1)])
-    return np.array([brentq(lambda z: z * j1(z) - Bi * j0(z), low, high, xtol=1e-15, rtol=1e-15) for low, high in zip(lows, highs, strict=True)])
+    return bisected(lambda z: z * j1(z) - Bi * j0(z), lows, highs)
 
 
 def exact(experiment):

@@ -45,3 +45,13 @@ def series(roots: np.ndarray, coefficients: np.ndarray, shape, hot: float, out: 
         return out + (hot - out) * (shape(np.multiply.outer(s / length, roots[seen])) @ (coefficients[seen] * np.exp(-(roots[seen] ** 2) * fourier)))
 
     return theta
+
+
+def bisected(function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Roots of a function that crosses zero once between each pair of bounds."""
+    rises = function(high) > function(low)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        below = (function(middle) < 0) == rises
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return 0.5 * (low + high)
