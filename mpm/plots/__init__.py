@@ -26,11 +26,12 @@ from pathlib import Path
 from typing import Any
 
 KINDS = ("overview", "series", "finals", "snapshot")
+FORMATS = (".png", ".svg", ".pdf")
 DATASETS = ("sweep.nc", "run.nc")
 
 
 class UnknownFigure(ValueError):
-    """A name that is not in KINDS."""
+    """A name that is not in KINDS, or a file that cannot hold what was asked."""
 
 
 def overview(tree: Any, path: Path | str | None = None) -> Any:
@@ -51,6 +52,8 @@ def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Pat
             raise UnknownFigure(f"there is no figure {name!r}; there are {', '.join(KINDS)}")
     if path is not None and len(wanted) > 1:
         raise UnknownFigure(f"one file cannot hold {len(wanted)} figures; leave the file out, or name one figure")
+    if path is not None and Path(path).suffix.lower() not in FORMATS:
+        raise UnknownFigure(f"{path}: a figure is written as {', '.join(FORMATS)}")
     dataset = _dataset(Path(out))
     tree, suffix = _open(dataset), ".svg" if svg else ".png"
     targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]

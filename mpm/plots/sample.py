@@ -97,18 +97,25 @@ def crosses(ax: Any, view: View, places: np.ndarray, bad: np.ndarray) -> None:
     place = blended_transform_factory(ax.transData, ax.transAxes)
     for mark, text in zip(MARKS, view.counted_reasons(), strict=False):
         here = bad & (view.reasons == text)
-        ax.plot(places[here], np.full(here.sum(), 0.04), mark, color=OKABE_ITO[1], ms=5, mew=1.3, transform=place)
+        ax.plot(places[here], np.full(here.sum(), 0.04), transform=place, **look(mark, text))
+
+
+def look(mark: str, text: str) -> dict[str, Any]:
+    """How a point without numbers is marked: a cross of its kind, or a faint dot where it is still to run."""
+    if text == "pending":
+        return {"ls": "None", "marker": ".", "color": QUIET, "ms": 4}
+    return {"ls": "None", "marker": mark, "color": OKABE_ITO[1], "ms": 5.5, "mew": 1.4}
 
 
 def failures(fig: Any, view: View) -> None:
     """What the crosses mean, under the panels."""
     rows = list(view.counted_reasons().items())[: len(MARKS)]
     handles = [
-        Line2D([], [], ls="None", marker=mark, color=OKABE_ITO[1], mew=1.5, label=f"{text} ({words.counted(count, 'point')})")
+        Line2D([], [], label=f"{text} ({words.counted(count, 'point')})", **look(mark, text))
         for mark, (text, count) in zip(MARKS, rows, strict=False)
     ]
     if handles:
-        fig.legend(handles=handles, loc="outside lower left", ncols=min(3, len(handles)))
+        fig.legend(handles=handles, loc="outside lower left", ncols=min(3, len(handles)), handlelength=1.0)
 
 
 def bars(ax: Any, view: View, parameters: list[Axis], blocks: list[np.ndarray], values: np.ndarray, title: bool, last: bool) -> None:

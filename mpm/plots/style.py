@@ -22,10 +22,10 @@ from matplotlib.transforms import ScaledTranslation
 from mpm.plots.words import number
 
 WIDTH, DPI = 1600 / 150, 150
-FORMATS = (".png", ".svg", ".pdf")
 INK, QUIET, FAINT = "#222222", "#6b6b6b", "#d9d9d9"
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe and Ito (2008)
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)), (0, (3, 1, 1, 1, 1, 1)))
+SMALL, HEADING = 9, "heading"
 MARKS = ("x", "+", "1", "2", "3", "4")
 STYLE = {
     "font.size": 10,
@@ -50,7 +50,7 @@ STYLE = {
     "lines.linewidth": 1.8,
     "lines.markersize": 5,
     "legend.frameon": False,
-    "legend.fontsize": 9,
+    "legend.fontsize": SMALL,
     "legend.title_fontsize": 9,
     "legend.handlelength": 2.4,
     "figure.titlesize": 13,
@@ -85,10 +85,11 @@ def ordered(count: int) -> list[Any]:
 
 def legend_below(ax: Any, rows: list[list[Any]]) -> None:
     """Legends under the axis label, a row each or more where a row is too wide, where they cover nothing."""
-    room = 0.86 * WIDTH * 72 / ax.get_subplotspec().get_gridspec().ncols
+    room = 0.92 * WIDTH * 72 / ax.get_subplotspec().get_gridspec().ncols
     for place, handles in enumerate(line for row in rows for line in broken(row, room)):
-        drop = ScaledTranslation(0, -(44 + 16 * place) / 72, ax.figure.dpi_scale_trans)
-        lines = any(handle.get_linestyle() != "None" for handle in handles)
+        length = max(handle_length(handle) for handle in handles)
+        back = (length + 0.6) * SMALL if handles[0].get_gid() == HEADING else 0.0  # a heading has no handle: its words begin the row
+        drop = ScaledTranslation(-back / 72, -(44 + 16 * place) / 72, ax.figure.dpi_scale_trans)
         found = Legend(
             ax,
             handles,
@@ -97,7 +98,7 @@ def legend_below(ax: Any, rows: list[list[Any]]) -> None:
             bbox_to_anchor=(0.0, 0.0),
             bbox_transform=ax.transAxes + drop,
             ncols=len(handles),
-            handlelength=2.4 if lines else 1.0,
+            handlelength=length,
             columnspacing=1.3,
             handletextpad=0.6,
             borderaxespad=0,
@@ -112,13 +113,20 @@ def broken(row: list[Any], room: float) -> list[list[Any]]:
     lines: list[list[Any]] = []
     left = 0.0
     for handle in row:
-        width = 5.3 * len(handle.get_label()) + (39 if handle.get_linestyle() != "None" else 24)
+        width = 5.6 * len(handle.get_label()) + (1.9 + handle_length(handle)) * SMALL
         if not lines or width > left:
             lines.append([])
             left = room
         lines[-1].append(handle)
         left -= width
     return lines
+
+
+def handle_length(handle: Any) -> float:
+    """Room for the mark of a legend entry, in letters: dashes take more than lines, lines more than marks, words alone none."""
+    if handle.get_gid() == HEADING:
+        return 0.0
+    return 1.0 if handle.get_linestyle() == "None" else 1.8 if handle.get_linestyle() == "-" else 2.6
 
 
 def plain_ticks(axis: Any) -> None:
@@ -132,14 +140,12 @@ def plain_ticks(axis: Any) -> None:
 
 def heading(text: str) -> Any:
     """A legend entry that is words alone: the title of its row."""
-    return Line2D([], [], ls="None", label=text)
+    return Line2D([], [], ls="None", label=text, gid=HEADING)
 
 
 def save(fig: Figure, path: Path | str) -> Path:
-    """Write PNG, SVG or PDF, by the suffix: beside the target first, then renamed over it. ValueError for another suffix."""
+    """Write PNG, SVG or PDF, by the suffix: beside the target first, then renamed over it."""
     path = Path(path)
-    if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path}: a figure is written as {', '.join(FORMATS)}")
     temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
     try:
         with styled():

@@ -30,8 +30,8 @@ class Axis:
     positions: np.ndarray = field(repr=False)
 
     @classmethod
-    def of(cls, coordinate: Any, dim: str, log: bool = False) -> "Axis":
-        """The axis of a coordinate along `dim`; logarithmic where asked, or where the values say so."""
+    def of(cls, coordinate: Any, dim: str, log: bool | None = None) -> "Axis":
+        """The axis of a coordinate along `dim`; logarithmic where the values say so, unless told."""
         name, raw, attrs = str(coordinate.name), coordinate.values, coordinate.attrs
         path, units = attrs.get("config_path", ""), attrs.get("units", "1")
         if raw.dtype.kind not in "fiu":
@@ -40,7 +40,7 @@ class Axis:
             return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
         scale = words.scale(raw, units, words.is_temperature_path(path))
         values = scale(raw)
-        log = log_spaced(values) or (log and (values > 0).all())
+        log = log_spaced(values) if log is None else bool(log and (values > 0).all())
         letter = words.symbol(name)
         title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
         return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
@@ -147,9 +147,7 @@ class View:
         """What a sample varies, then the axes beside it."""
         rows = [row for name, row in self.root.coords.items() if row.dims == (self.design,) and row.dtype.kind in "fiu"]
         rows = [row for row in rows if len(np.unique(row.values)) > 1]
-        logs = self.drawn_in_logarithm
-        drawn = [Axis.of(row, str(self.design), bool(logs & {str(row.name), words.symbol(str(row.name)), row.attrs.get("config_path")})) for row in rows]
-        return drawn + [axis for axis in self.axes if not axis.category]
+        return [Axis.of(row, str(self.design), self.drawn_in_logarithm(row)) for row in rows] + [axis for axis in self.axes if not axis.category]
 
     @cached_property
     def status(self) -> np.ndarray:
@@ -250,11 +248,13 @@ class View:
             middle = candidates[np.argmin(np.abs(candidates - middle).sum(axis=1))]
         return dict(zip(self.dims, map(int, middle), strict=True))
 
-    @cached_property
-    def drawn_in_logarithm(self) -> set[str]:
-        """Names, as the config has them, of sampled parameters whose range is logarithmic."""
+    def drawn_in_logarithm(self, row: Any) -> bool | None:
+        """Whether the config draws a sampled parameter from a logarithmic range; None where it does not say."""
         sample = (self.config.get("sweep") or {}).get("sample") or {}
-        return {name for design in sample.values() if design for name, span in design["ranges"].items() if isinstance(span, dict) and "log" in span}
+        ranges = {name: span for design in sample.values() if design for name, span in design["ranges"].items()}
+        name = str(row.name)
+        spans = [ranges[key] for key in (name, words.symbol(name), row.attrs.get("config_path")) if key in ranges]
+        return isinstance(spans[0], dict) and "log" in spans[0] if spans else None
 
     def series_names(self) -> list[str]:
         """Series with a number somewhere, probes first, then what the config lists; all of them where it lists nothing."""

@@ -1,0 +1,179 @@
+"""Figures: files are made, axes say what and in which unit, failed points are marked with their reason, nothing raises for NaN."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import mpm.plots
+from mpm.plots import UnknownFigure, _draw, figures, overview
+
+
+def texts(fig):
+    """Every word on a figure."""
+    from matplotlib.text import Text
+
+    fig.canvas.draw_idle()
+    return [found.get_text() for found in fig.findobj(Text) if found.get_text()]
+
+
+def panels(fig):
+    return [ax for ax in fig.axes if ax.axison]
+
+
+def marked(ax, marker):
+    """Points that a panel marks with `marker`, legends apart."""
+    return sum(len(line.get_xdata()) for line in ax.lines if line.get_marker() == marker)
+
+
+def test_two_axes_give_a_final_with_a_line_a_value_and_series_beside_it(loaf, tmp_path):
+    fig = overview(loaf, tmp_path / "sweep.png")
+    assert (tmp_path / "sweep.png").stat().st_size > 10_000
+    final, series = panels(fig)
+    assert final.get_ylabel() == "Time for centre to reach 95 °C [s]"
+    assert final.get_xlabel() == "Heat-transfer coefficient β [W/m²/K]"
+    assert final.get_xscale() == "log"
+    assert series.get_xlabel() == "Time [s]"
+    assert series.get_ylabel() == "Temperature [°C]"
+    assert fig.get_suptitle() == "A title"
+    assert {"κ [W/m/K]", "0.2", "0.35", "0.5", "centre", "crust", "centre, measured"} <= set(texts(fig))
+
+
+def test_width_is_that_of_a_page(loaf, tmp_path):
+    from matplotlib.image import imread
+
+    overview(loaf, tmp_path / "sweep.png")
+    assert imread(tmp_path / "sweep.png").shape[1] == 1600
+
+
+def test_points_that_are_not_ok_are_crosses_with_their_reason(loaf):
+    fig = overview(loaf)
+    final = panels(fig)[0]
+    assert marked(final, "x") == 2
+    assert marked(final, "^") == 1
+    assert {"diverged: det F ≤ 0 (2 points)", "pending (1 point)", "not reached within 100 s (1 point)"} <= set(texts(fig))
+
+
+def test_the_point_nearest_to_measured_stands_for_the_sweep(loaf):
+    fig = overview(loaf)
+    series = panels(fig)[1]
+    assert series.get_title(loc="left") == "β = 10.8 W/m²/K"
+    dots = next(line for line in series.lines if line.get_marker() == "o" and len(line.get_xdata()) == 3)
+    np.testing.assert_allclose(dots.get_ydata(), np.array([310.0, 330, 350]) - 273.15)
+    assert any("κ = 0.35 W/m/K, rms off the measured curve: centre 0.0 K" in text for text in texts(fig))
+
+
+def test_series_that_ended_early_say_so(loaf):
+    beside = loaf.isel(beta=[3, 2])
+    assert "the run ended here" in texts(_draw(beside, "series"))
+
+
+@pytest.mark.parametrize("error", ["", "diverged: det F <= 0 at particle 1, t = 2 s, step 3"])
+def test_a_sweep_without_one_good_point_says_so(tree, tmp_path, error):
+    bad = tree({"kappa": [0.1, 0.2]}, {"temperature_mean": [1.0, 2.0]}, status=[4, 1], error=[error, "failed: ValueError: no"])
+    for kind in mpm.plots.KINDS:
+        assert _draw(bad, kind) is not None
+    words = "\n".join(texts(overview(bad, tmp_path / "sweep.png")))
+    assert "None of 2 points is ok" in words
+    assert "failed: ValueError: no" in words
+    assert (tmp_path / "sweep.png").exists()
+
+
+def test_a_sweep_that_has_not_begun_says_so(tree):
+    assert "No point has run yet." in texts(overview(tree({"kappa": [0.1, 0.2]}, {}, status=[6, 6])))
+
+
+def test_errors_over_cells_are_logarithmic_both_ways_and_tell_their_order(tree):
+    cells = np.array([1, 2, 4, 8]) * 1e-3
+    fig = overview(tree({"cell": cells}, {"error_l2": 3 * cells**2, "error_max": 9 * cells**2}))
+    ax = panels(fig)[0]
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert ax.get_xlabel() == "Edge of a cell [mm]"
+    assert ax.get_ylabel() == "Error against the exact solution [K]"  # a difference: not in degrees Celsius
+    assert "root mean square, order 2.00" in texts(fig)
+
+
+def test_infinity_has_a_place_on_the_axis(tree):
+    fig = overview(tree({"beta": [0.1, 1.0, 10.0, np.inf]}, {"error_l2": [1e-4, 2e-4, 3e-4, 4e-4]}))
+    ax = panels(fig)[0]
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["0.1", "1", "10", "∞"]
+    np.testing.assert_allclose(ax.lines[0].get_xdata(), [0.1, 1, 10, 100])
+
+
+def test_kinds_on_an_axis_are_words(tree):
+    fig = overview(tree({"transfer": np.array(["apic", "flip"], dtype=object)}, {"temperature_mean": [300.0, 301.0]}))
+    assert [tick.get_text() for tick in panels(fig)[0].get_xticklabels()] == ["apic", "flip"]
+
+
+def test_three_axes_give_a_panel_a_value_of_the_third(tree):
+    shape = (2, 4, 3)
+    axes = {"cell": [1e-3, 2e-3], "beta": [5.0, 10, 20, 40], "kappa": [0.2, 0.3, 0.4]}
+    fig = overview(tree(axes, {"time_to_centre_95_degC": np.arange(24.0).reshape(shape) + 1}))
+    assert [ax.get_title(loc="left") for ax in panels(fig)] == ["cell = 1 mm", "cell = 2 mm"]
+
+
+def test_lines_beyond_a_legend_get_a_colour_bar(tree):
+    axes = {"kappa": np.linspace(0.1, 0.5, 10), "beta": np.geomspace(5, 50, 12)}
+    fig = overview(tree(axes, {"time_to_centre_95_degC": np.random.default_rng(0).random((10, 12)) + 1}))
+    assert "Heat conductivity κ [W/m/K]" in [ax.get_ylabel() for ax in fig.axes]
+
+
+def test_a_single_run_gives_its_series(tree):
+    time = np.linspace(0, 1, 11)
+    config = {"output": {"observables": ["energy.kinetic", "energy.elastic", "position.mean_z"]}}
+    series = {"energy_kinetic": time, "energy_elastic": 1 - time, "position_mean_z": time / 100, "mass_total": time * 0 + 1}
+    fig = overview(tree({}, {"energy_kinetic": 1.0}, series, config=config, time=time))
+    assert sorted(ax.get_ylabel() for ax in panels(fig)) == ["Centre of mass along z [mm]", "Energy [J]"]
+
+
+@pytest.mark.parametrize("kind", ["overview", "series", "finals", "snapshot"])
+def test_every_kind_is_made_of_every_shape(tree, loaf, kind):
+    one = tree({"kappa": [0.1]}, {"temperature_mean": [300.0]})
+    bare = tree({}, {"temperature_mean": 300.0})
+    empty = tree({"kappa": [0.1, 0.2]}, {"time_to_centre_95_degC": [np.nan, np.nan]})
+    for each in (one, bare, empty, loaf):
+        assert _draw(each, kind).get_suptitle() == "A title"
+
+
+def test_figures_of_a_folder(loaf, tmp_path):
+    loaf.to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
+    assert figures(tmp_path) == [tmp_path / "overview.png"]
+    assert figures(tmp_path, ["series", "finals"], svg=True) == [tmp_path / "series.svg", tmp_path / "finals.svg"]
+    assert (tmp_path / "series.svg").read_text().startswith("<?xml")
+    assert figures(tmp_path, "series", tmp_path / "a.png") == [tmp_path / "a.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "finals.svg", "overview.png", "series.svg", "sweep.nc"]
+
+
+def test_what_cannot_be_drawn_is_told_before_anything_is_written(loaf, tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"sweep\.nc"):
+        figures(tmp_path)
+    loaf.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
+    with pytest.raises(UnknownFigure, match="overview, series"):
+        figures(tmp_path, "overveiw")
+    with pytest.raises(UnknownFigure, match="one file"):
+        figures(tmp_path, ["series", "finals"], tmp_path / "a.png")
+    with pytest.raises(UnknownFigure, match=r"\.png"):
+        figures(tmp_path, "series", tmp_path / "a.gif")
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_snapshots_of_the_grid(tree):
+    root = tree({}, {"temperature_mean": 300.0})
+    y, x = np.linspace(0, 0.02, 5), np.linspace(0, 0.01, 4)
+    field = 300 + np.arange(3)[:, None, None] + np.zeros((3, 5, 4))
+    field[:, 0, 0] = np.nan
+    attrs = {"units": "K", "long_name": "temperature"}
+    root["grid"] = xr.Dataset({"temperature": (("snapshot", "y", "x"), field, attrs)}, {"snapshot": [0.0, 1, 2], "y": y, "x": x})
+    fig = _draw(root, "snapshot")
+    assert [ax.get_title(loc="left") for ax in fig.axes[:3]] == ["t = 0 s", "t = 1 s", "t = 2 s"]
+    assert (fig.axes[0].get_xlabel(), fig.axes[0].get_ylabel(), fig.axes[3].get_ylabel()) == ("x [mm]", "y [mm]", "Temperature [°C]")
+
+
+def test_snapshots_of_particles(tree):
+    root = tree({"kappa": [0.1, 0.2]}, {"temperature_mean": [300.0, 301.0]}, status=[4, 0])
+    position = np.random.default_rng(0).random((30, 2))
+    rows = {"position": (("obs", "direction"), position), "J": ("obs", np.arange(30.0), {"units": "1", "long_name": "volume ratio det F"})}
+    rows |= {"row_size": (("kappa", "snapshot"), [[10, 0], [10, 10]]), "row_start": (("kappa", "snapshot"), [[0, 10], [10, 20]])}
+    root["particles"] = xr.Dataset(rows, {"snapshot": [0.0, 1.0]})
+    fig = _draw(root, "snapshot")
+    np.testing.assert_allclose(fig.axes[1].collections[0].get_offsets(), position[20:])
+    assert "κ = 0.2 W/m/K" in texts(fig)

@@ -1,0 +1,70 @@
+"""Figures of samples, and rank correlations with intervals that deserve the name."""
+
+import numpy as np
+import pytest
+
+from mpm.plots import overview
+from mpm.plots.sample import correlation, ranks, spearman
+
+RANDOM = np.random.default_rng(3)
+
+
+def sample(tree, count, status=None, error=None):
+    u = np.random.default_rng(5).random((count, 3))
+    axes = {"kappa": 0.1 * 20 ** u[:, 0], "beta": 50 * 100 ** u[:, 1], "eta": u[:, 2]}
+    ranges = {"κ": {"log": [0.1, 2]}, "beta": {"log": [50, 5000]}, "eta": [0, 1]}
+    config = {"output": {"observables": ["extent.x"]}, "sweep": {"sample": {"sobol": {"count": count, "ranges": ranges}}}}
+    finals = {"extent_x": 1e-2 + 1e-3 * u[:, 0], "mass_total": np.ones(count), "temperature_mean": 300 + u[:, 1]}
+    return tree(axes, finals, sample=True, config=config, status=status, error=error)
+
+
+def test_scatter_a_parameter_and_bars(tree, tmp_path):
+    status, error = np.zeros(32, np.int8), np.full(32, "", dtype=object)
+    status[4], error[4] = 4, "diverged: det F <= 0 at particle 2, t = 1 s, step 4"
+    fig = overview(sample(tree, 32, status, error), tmp_path / "sweep.png")
+    kappa, beta, eta, bars = fig.axes
+    assert [ax.get_xscale() for ax in (kappa, beta, eta)] == ["log", "log", "linear"]
+    assert [ax.get_xlabel() for ax in (kappa, beta, eta)] == ["κ [W/m/K]", "β [W/m²/K]", "η [Pa s]"]
+    assert kappa.get_ylabel() == "Extent along x [mm]"
+    assert len(kappa.lines[1].get_xdata()) == 1  # the cross of the point that diverged
+    assert fig.legends[0].get_texts()[0].get_text() == "diverged: det F ≤ 0 (1 point)"
+    assert bars.get_title(loc="left") == "Rank correlation, n = 31"
+    assert bars.patches[0].get_width() == pytest.approx(1.0)
+    colours = [bar.get_facecolor() for bar in bars.patches]
+    assert colours[0] != colours[1]  # the interval of beta holds zero: pale
+
+
+def test_few_points_give_no_bars(tree):
+    fig = overview(sample(tree, 6))
+    assert not fig.axes[3].patches
+    assert "too few" in fig.axes[3].texts[0].get_text()
+
+
+def test_ranks_share_ties():
+    np.testing.assert_array_equal(ranks(np.array([3.0, 1, 1, 5])), [3, 1.5, 1.5, 4])
+
+
+def test_correlation_agrees_with_scipy():
+    from scipy.stats import spearmanr
+
+    one, two = RANDOM.random(40), np.round(RANDOM.random(40), 1)
+    assert correlation(one, two) == pytest.approx(spearmanr(one, two).statistic, abs=1e-12)
+    assert correlation(one, np.ones(40)) == 0.0
+
+
+def test_interval_covers_the_truth_about_as_often_as_it_says():
+    """Of 60 independent pairs of 30, the 95 % interval should hold zero in all but a few: binomial(60, 0.05) exceeds 9 once in 1 400."""
+    missed = 0
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        _, low, high = spearman(random.random(30), random.random(30), np.arange(30), seed)
+        missed += not low <= 0 <= high
+    assert missed <= 9
+
+
+def test_groups_are_resampled_together():
+    """Each point given ten times over is no more evidence than once: the interval stays as wide."""
+    one, two = RANDOM.random(20), RANDOM.random(20)
+    _, low, high = spearman(one, two, np.arange(20))
+    _, low_ten, high_ten = spearman(np.repeat(one, 10), np.repeat(two, 10), np.repeat(np.arange(20), 10))
+    assert high_ten - low_ten == pytest.approx(high - low, rel=0.1)
