@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from mpm.basis import second_moment
 from mpm.boundary import directions, extents
 from mpm.jit import kernel, role
 from mpm.materials import energy, enthalpy, stress
@@ -82,9 +83,11 @@ def heat_since(body, start: np.ndarray) -> float:
 
 
 def kinetic(space, particles) -> float:
-    """1/2 sum m (|v|^2 + h^2/4 |C|^2): with the affine part [J]."""
-    still = 0.5 * np.sum(particles.m * np.sum(particles.v.astype(float) ** 2, axis=1))
-    return float(still + space.h**2 / 8 * np.sum(particles.m * np.sum(particles.C.astype(float) ** 2, axis=(1, 2))))
+    """1/2 sum m (|v|^2 + sum_d (sum w d^2) |C_d|^2): with the affine part [J]."""
+    still = np.sum(particles.v.astype(float) ** 2, axis=1)
+    moment = space.h**2 * second_moment(space.basis, particles.x / space.h)  # (N, D), or one number
+    swirl = np.sum(moment * np.sum(particles.C.astype(float) ** 2, axis=1), axis=1)
+    return float(0.5 * np.sum(particles.m * (still + swirl)))
 
 
 def finite(body) -> str:

@@ -59,18 +59,20 @@ def kernel(function=None, *, inline=False):
     return njit(cache=True, **FLAGS, **({"forceinline": True} if inline else {}))(function)
 
 
-def role(stub):
+def role(stub=None, *, inline=False):
     """A function chosen by the type of its first argument, in Python and in compiled code alike.
 
     `stub` gives name, argument names and docstring. A law registers itself with `@stub.register(Kind)`, `Kind` a
     NamedTuple class, on a function with the same argument names and no annotations (Numba compares the signatures).
-    Kinds are types, values are run-time arguments: a sweep over values shares one compiled kernel.
+    Kinds are types, values are run-time arguments: a sweep over values shares one compiled kernel. `inline` as in `kernel`.
     """
+    if stub is None:
+        return functools.partial(role, inline=inline)
     laws = functools.singledispatch(stub)
 
     @functools.wraps(stub)
     def pick(*args):
         return laws.registry.get(getattr(args[0], "instance_class", None))
 
-    overload(laws, jit_options=FLAGS)(pick)
+    overload(laws, jit_options=FLAGS | ({"forceinline": True} if inline else {}))(pick)
     return laws

@@ -14,11 +14,24 @@ from mpm.outcome import Outcome
 PAD = 2  # nodes outside each face of the domain: one that the basis reaches, one to notice a leaver
 
 
+class Linear(NamedTuple):
+    """Hat functions: two nodes a direction (mpm.basis.linear)."""
+
+
+class Quadratic(NamedTuple):
+    """Quadratic B-splines: three nodes a direction (mpm.basis.quadratic)."""
+
+
+class Cubic(NamedTuple):
+    """Cubic B-splines: four nodes a direction (mpm.basis.cubic)."""
+
+
 class Line(NamedTuple):
     """One direction: uniaxial strain. Node i of an array lies at (i - PAD) h."""
 
     h: float
     n0: int
+    basis: Any = Quadratic()
 
 
 class Plane(NamedTuple):
@@ -27,6 +40,7 @@ class Plane(NamedTuple):
     h: float
     n0: int
     n1: int
+    basis: Any = Quadratic()
 
 
 class Axisymmetric(NamedTuple):
@@ -35,6 +49,7 @@ class Axisymmetric(NamedTuple):
     h: float
     n0: int
     n1: int
+    basis: Any = Quadratic()
 
 
 class Volume(NamedTuple):
@@ -44,6 +59,7 @@ class Volume(NamedTuple):
     n0: int
     n1: int
     n2: int
+    basis: Any = Quadratic()
 
 
 class Particles(NamedTuple):

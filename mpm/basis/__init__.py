@@ -1,7 +1,18 @@
-"""Bases: how a particle sees the nodes around it.
+"""Bases: how a particle sees the nodes around it, in one direction; the product over directions is the transfers' business.
 
-Role      quadratic(f) -> weights, derivatives, offsets: three each, for the nodes r-1, r, r+1
-Shapes    f = x/h - r in [-1/2, 1/2], r the nearest node            Units  derivatives and offsets in cells (divide, multiply by h)
-May use   mpm.jit                                                  May not  see particles, grids or laws
-To add    a file here and its name in config.numerics; tests/test_basis.py checks partition of unity and linear reproduction.
+Roles     stencil(basis, s) -> first, w, g, d, b    s = x/h; first: index in a padded array of the first node seen; then a tuple each, one entry a node:
+          w weights; g their derivatives; d offsets x_i/h - s; b = w d/(sum w d^2), which fits a slope by least squares (the MLS gradient)
+          second_moment(basis, s) -> sum w d^2      inverse_moment(basis) -> its inverse where it is a constant
+          room(basis)                               how far inside the outermost node of an array a particle must stay
+Units     cells: divide g and b by h, multiply d by h. The number of nodes seen, len(w), is a constant at compile time.
+May use   mpm.state, mpm.jit                                       May not  see particles, grids or laws
+To add    a kind in mpm.state, a file here, its name in config.numerics and BASES; tests/test_bases.py ranges over BASES.
 """
+
+from mpm.basis import cubic, linear, quadratic  # registers the bases
+from mpm.basis.roles import inverse_moment, room, second_moment, stencil
+from mpm.state import Cubic, Linear, Quadratic
+
+BASES = {"linear": Linear, "quadratic": Quadratic, "cubic": Cubic}
+
+__all__ = ["BASES", "cubic", "inverse_moment", "linear", "quadratic", "room", "second_moment", "stencil"]

@@ -1,9 +1,14 @@
 """Quadratic B-splines on nodes of spacing h (physics.md 3).
 
-w = 1/2 (1/2 - f)^2, 3/4 - f^2, 1/2 (1/2 + f)^2;  sum w = 1, sum w d = 0, sum w d^2 = h^2/4.
+f = x/h - nearest node:  w = 1/2 (1/2 - f)^2, 3/4 - f^2, 1/2 (1/2 + f)^2;  sum w = 1, sum w d = 0, sum w d^2 = h^2/4.
+Good for: nearly everything.   Fails when: particles are fewer than two a cell (the quadrature floor).
 """
 
+import numpy as np
+
+from mpm.basis.roles import inverse_moment, room, second_moment, stencil
 from mpm.jit import kernel
+from mpm.state import PAD, Quadratic
 
 SECOND_MOMENT = 0.25  # sum_i w d d^T = SECOND_MOMENT h^2 1
 
@@ -19,3 +24,27 @@ def weights(f):
 def slopes(f):
     """Derivatives times h."""
     return f - 0.5, -2.0 * f, f + 0.5
+
+
+@stencil.register(Quadratic)
+def _(basis, s):
+    nearest = np.floor(s + 0.5)
+    f = s - nearest
+    w = weights(f)
+    left, right = -1.0 - f, 1.0 - f
+    return int(nearest) + PAD - 1, w, slopes(f), (left, -f, right), (4.0 * left * w[0], -4.0 * f * w[1], 4.0 * right * w[2])
+
+
+@second_moment.register(Quadratic)
+def _(basis, s):
+    return SECOND_MOMENT
+
+
+@inverse_moment.register(Quadratic)
+def _(basis):
+    return 4.0
+
+
+@room.register(Quadratic)
+def _(basis):
+    return 0.6

@@ -1,7 +1,8 @@
 """Slip, stick and contact walls on the faces of the domain.
 
-With a ghost node g outside a wall and its image i inside: fold  m_i += m_g, p_i += s p_g  with s = -1 for the components that the wall
-holds (the normal one; all of them at a stick wall) and +1 for the others; the wall's own node carries v = 0 in the held components; unfold  v_g = s v_i.
+With a ghost node g outside a wall (PAD of them, so that any basis finds its own) and its image i inside: fold  m_i += m_g, p_i += s p_g  with s = -1
+for the components that the wall holds (the normal one; all of them at a stick wall) and +1 for the others; the wall's own node carries v = 0 in the
+held components; unfold  v_g = s v_i.
 This is the mirrored body written down, so it conserves mass, and heat (s = +1: insulated) exactly.
 Contact: v_n = max(v_n, 0) inwards at and behind the wall; the body may leave.
 Fails when: a body at a contact wall is sampled by fewer than two particles a cell (it sinks in by up to half a cell).
@@ -28,12 +29,12 @@ def fold(nodes, components, shape, box, walls):
             if walls[axis, side] == CONTACT:
                 continue
             wall = PAD if side == 0 else shape[axis] - 1 - PAD
-            out = -1 if side == 0 else 1
-            ghost = wall + out
-            if not (box[axis, 0] <= ghost < box[axis, 1]):
-                continue
-            box[axis, 0], box[axis, 1] = min(box[axis, 0], wall - out), max(box[axis, 1], wall - out + 1)
-            mirror_plane(nodes, components, shape, box, axis, ghost, wall - out, walls[axis, side], True)
+            for k in range(1, PAD + 1):
+                out = -k if side == 0 else k
+                if not (box[axis, 0] <= wall + out < box[axis, 1]):
+                    continue
+                box[axis, 0], box[axis, 1] = min(box[axis, 0], wall - out), max(box[axis, 1], wall - out + 1)
+                mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], True)
 
 
 @kernel
@@ -46,9 +47,10 @@ def unfold(nodes, components, shape, box, walls):
             if walls[axis, side] == CONTACT:
                 continue
             wall = PAD if side == 0 else shape[axis] - 1 - PAD
-            out = -1 if side == 0 else 1
-            if box[axis, 0] <= wall + out < box[axis, 1]:
-                mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], False)
+            for k in range(1, PAD + 1):
+                out = -k if side == 0 else k
+                if box[axis, 0] <= wall + out < box[axis, 1]:
+                    mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], False)
 
 
 @kernel

@@ -16,7 +16,7 @@ class Grid(Model):
     dimension: Dimension = doc(description="0, 1, 2 (plane strain), axisymmetric (r, z) or 3")
     size: tuple[Length, ...] = doc(description="extent of the domain, one length a direction")
     cell: Length = doc(description="edge of a cell")
-    basis: Annotated[Literal["quadratic"], Choice()] = doc("quadratic", description="B-splines of the grid")
+    basis: Annotated[Literal["linear", "quadratic", "cubic"], Choice()] = doc("quadratic", description="B-splines of the grid")
 
     @property
     def directions(self) -> int:

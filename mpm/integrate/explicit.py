@@ -10,6 +10,7 @@ A chunk of particles stays in the first-level cache from gather to scatter.
 import numpy as np
 from numba import literal_unroll
 
+from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
@@ -130,7 +131,7 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
 @kernel
 def move(space, x, chunk, first, count, dt, report):
     """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run (a NaN position too)."""
-    shape = extents(space)
+    shape, inside = extents(space), room(space.basis)
     for p in range(count):
         i = first + p
         speed = 0.0
@@ -138,7 +139,7 @@ def move(space, x, chunk, first, count, dt, report):
             v = chunk.v[c, p]
             speed += v * v
             x[i, c] += dt * v
-            # Node i of an array lies at (i - PAD) h; the stencil of x reaches one node to each side of the nearest.
-            if not (0.6 - PAD) * space.h < x[i, c] < (shape[c] - PAD - 1.6) * space.h and report[CODE] == 0.0:
+            # Node i of an array lies at (i - PAD) h.
+            if not (inside - PAD) * space.h < x[i, c] < (shape[c] - 1 - PAD - inside) * space.h and report[CODE] == 0.0:
                 report[CODE], report[PARTICLE] = LEFT_GRID, i
         report[SPEED] = max(report[SPEED], speed)

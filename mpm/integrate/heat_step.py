@@ -2,7 +2,7 @@
 
 C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
 C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~ = w + grad(w) (x_s - x_p)
-h_p += alpha [ sum w d(theta_i) + blend (sum w theta_i - theta_p) ],   theta_p = theta(h_p),   c_p = affine 4/h^2 sum w theta_i+ d
+h_p += alpha [ sum w d(theta_i) + blend (sum w theta_i - theta_p) ],   theta_p = theta(h_p),   c_p = affine sum w theta_i+ d/(sum w d^2)
 
 Both w and w~ sum to one over the nodes, and grad(w) to nothing, so the heat of the particles changes by exactly what the surface exchanged,
 whatever alpha is. blend = 1 and affine = 1 is APIC; blend = affine = 0 is FLIP; blend = 1, affine = 0 is PIC.
@@ -12,6 +12,7 @@ is over the limit of integrate/timestep.py.
 
 import numpy as np
 
+from mpm.basis import stencil
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, unfold
 from mpm.heat.local import rise
@@ -19,7 +20,7 @@ from mpm.heat.surface import area_and_offset
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
 from mpm.state import Isothermal, NoExchange, Surface, Thermal
-from mpm.transfer import CHUNK, gather_scalar, locate, scatter_scalar
+from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
 
 @kernel
@@ -47,8 +48,8 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     empty(shape, box)
     for i in range(x.shape[0]):
         for a in range(x.shape[1]):
-            i0, _ = locate(x[i, a], 1.0 / space.h)
-            box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + 3)
+            i0, w, _, _, _ = stencil(space.basis, x[i, a] / space.h)
+            box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + len(w))
     capacity, theta, start, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     D = directions(space)
     work = np.zeros((2 + 3 * D, CHUNK))

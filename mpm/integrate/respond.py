@@ -1,12 +1,13 @@
 """How the particles of a chunk answer the gathered velocity gradient (physics.md 4, steps 5 to 8), by dimension.
 
 A = dt L;  J <- J det(1 + A);  B <- (1 + A)(1 + B)(1 + A)^T - 1;  eps_i = 1/2 log1p(B_i);  return map;  heating;  tau from eps and the new temperature.
-Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau grad(w), as S (with the MLS gradient 4/h^2 S, a slope).
+Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau grad(w), as S (with the MLS gradient S/(sum w d^2), a slope).
 `report` collects what guards and limits need. A particle that cannot answer ends the step with its code (mpm.outcome).
 """
 
 import math
 
+from mpm.basis import inverse_moment
 from mpm.heat.local import heat_locally, temperature, thermal_stress
 from mpm.jit import kernel, role
 from mpm.materials import FLOW, NoFlow, flow, stress
@@ -124,7 +125,7 @@ def _(surface, chunk, i, p, dt):
 @respond.register(Line)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
-    scale = 1.0 if uses_basis_gradient(gradient) else 4.0 / (space.h * space.h)
+    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
     for p in range(count):
         i = first + p
         A = (dt * chunk.L[0, 0, p],)
@@ -167,7 +168,7 @@ def respond_plane(space, gradient, body, chunk, i, p, hoop, dt, next_dt, report)
     carry_surface(body.surface, chunk, i, p, dt)
     xx, yy, xy = compose2(t1, t2, c, s)
     chunk.S[0, 0, p], chunk.S[0, 1, p], chunk.S[1, 0, p], chunk.S[1, 1, p] = xx, xy, xy, yy
-    scale = 1.0 if uses_basis_gradient(gradient) else 4.0 / (space.h * space.h)
+    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
     load(particles, chunk, i, p, 2, -next_dt * particles.V0[i] * scale)
     return particles.V0[i] * t3
 
@@ -196,7 +197,7 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
     e, L, b = chunk.e, chunk.L, particles.B
-    scale = 1.0 if uses_basis_gradient(gradient) else 4.0 / (space.h * space.h)
+    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
     for p in range(count):
         i = first + p
         A = increment3(L, p, dt)

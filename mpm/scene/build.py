@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from mpm.basis import BASES
 from mpm.boundary import KINDS
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
 from mpm.observe import Watch
@@ -69,7 +70,7 @@ def grid_space(experiment):
             raise SceneError(f"grid.size {size:g} m is no whole number of cells of {grid.cell:g} m: walls stand on grid lines; change grid.cell or grid.size")
     nodes = [n + 1 + 2 * PAD for n in count]
     kind = {1: Line, 2: Plane, "axisymmetric": Axisymmetric, 3: Volume}[grid.dimension]
-    return kind(grid.cell, *nodes)
+    return kind(grid.cell, *nodes, BASES[grid.basis]())
 
 
 def sample(experiment, body):
@@ -180,6 +181,11 @@ def schemes(experiment):
     return scheme, blend, affine
 
 
+def gradient_operator(experiment):
+    """The gradient of the particles. On hat functions the MLS gradient is the gradient of the basis: one operator, by its cheaper name."""
+    return Mls() if experiment.method.gradient == "mls" and experiment.grid.basis != "linear" else Bspline()
+
+
 def wall_kinds(experiment) -> np.ndarray:
     """(3, 2) kinds; slip where the config says nothing, and on the axis."""
     kinds = np.full((3, 2), KINDS["slip"])
@@ -202,7 +208,7 @@ def build(experiment, exact=None) -> Scene:
     times = output_times(experiment)
     return Scene(
         space=space,
-        gradient=Mls() if experiment.method.gradient == "mls" else Bspline(),
+        gradient=gradient_operator(experiment),
         scheme=scheme,
         names=names,
         bodies=tuple(moving_body(experiment, name, zero) for name in names),

@@ -12,6 +12,8 @@ from mpm.state import Run
 def rigid_bodies(experiment) -> list:
     """The bodies of a rigid scene; SceneError for one that has nothing to do."""
     from mpm.rigid import RigidBody
+    if experiment.grid.basis != "quadratic":
+        raise SceneError(f"grid.basis {experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out")
     bodies = []
     for name, body in experiment.bodies.items():
         material = experiment.materials[body.material]

@@ -1,8 +1,11 @@
-"""Transfers in two directions: nine nodes a particle. Axisymmetric bodies use the same: the factor r sits in their masses and volumes."""
+"""Transfers in two directions: four, nine or sixteen nodes a particle, by the basis of the space.
 
-from mpm.basis.quadratic import slopes, weights
+Axisymmetric bodies use the same: the factor r sits in their masses and volumes.
+"""
+
+from mpm.basis import stencil
 from mpm.state import Axisymmetric, Plane
-from mpm.transfer.roles import gather, gather_scalar, locate, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
 
 
 @scatter.register(Plane)
@@ -11,22 +14,19 @@ def _(space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
-        i0, fx = locate(x[first + p, 0], inverse)
-        j0, fy = locate(x[first + p, 1], inverse)
-        wx, wy, gx, gy = weights(fx), weights(fy), slopes(fx), slopes(fy)
-        box[0, 0], box[0, 1] = min(box[0, 0], i0), max(box[0, 1], i0 + 3)
-        box[1, 0], box[1, 1] = min(box[1, 0], j0), max(box[1, 1], j0 + 3)
+        i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
+        j0, wy, gy, dy, _ = stencil(space.basis, x[first + p, 1] * inverse)
+        box[0, 0], box[0, 1] = min(box[0, 0], i0), max(box[0, 1], i0 + len(wx))
+        box[1, 0], box[1, 1] = min(box[1, 0], j0), max(box[1, 1], j0 + len(wy))
         m, a0, a1 = chunk.m[p], chunk.a[0, p], chunk.a[1, p]
         A00, A01, A10, A11 = h * chunk.A[0, 0, p], h * chunk.A[0, 1, p], h * chunk.A[1, 0, p], h * chunk.A[1, 1, p]
         G00, G01, G10, G11 = inverse * chunk.G[0, 0, p], inverse * chunk.G[0, 1, p], inverse * chunk.G[1, 0, p], inverse * chunk.G[1, 1, p]
-        for i in range(3):
-            dx = i - 1 - fx
-            b0, b1 = a0 + A00 * dx, a1 + A10 * dx
+        for i in range(len(wx)):
+            r0, r1 = a0 + A00 * dx[i], a1 + A10 * dx[i]
             row = (i0 + i) * n1 + j0
-            for j in range(3):
-                dy = j - 1 - fy
+            for j in range(len(wy)):
                 w = wx[i] * wy[j]
-                p0, p1 = w * (b0 + A01 * dy), w * (b1 + A11 * dy)
+                p0, p1 = w * (r0 + A01 * dy[j]), w * (r1 + A11 * dy[j])
                 if basis_gradient:
                     g0, g1 = gx[i] * wy[j], wx[i] * gy[j]
                     p0 += G00 * g0 + G01 * g1
@@ -42,42 +42,38 @@ def _(space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):
-        i0, fx = locate(x[first + p, 0], inverse)
-        j0, fy = locate(x[first + p, 1], inverse)
-        wx, wy, gx, gy = weights(fx), weights(fy), slopes(fx), slopes(fy)
+        i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)
+        j0, wy, gy, _, by = stencil(space.basis, x[first + p, 1] * inverse)
         v0, v1 = 0.0, 0.0
         C00, C01, C10, C11 = 0.0, 0.0, 0.0, 0.0
         L00, L01, L10, L11 = 0.0, 0.0, 0.0, 0.0
-        for i in range(3):
+        for i in range(len(wx)):
             row = (i0 + i) * n1 + j0
             s0, s1, t0, t1, q0, q1 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            for j in range(3):
+            for j in range(len(wy)):
                 u0, u1 = nodes[row + j, 0], nodes[row + j, 1]
-                wd = wy[j] * (j - 1 - fy)
                 s0 += wy[j] * u0
                 s1 += wy[j] * u1
-                t0 += wd * u0
-                t1 += wd * u1
+                t0 += by[j] * u0
+                t1 += by[j] * u1
                 q0 += gy[j] * u0
                 q1 += gy[j] * u1
-            wd = wx[i] * (i - 1 - fx)
             v0 += wx[i] * s0
             v1 += wx[i] * s1
-            C00 += wd * s0
+            C00 += bx[i] * s0
             C01 += wx[i] * t0
-            C10 += wd * s1
+            C10 += bx[i] * s1
             C11 += wx[i] * t1
             L00 += gx[i] * s0
             L01 += wx[i] * q0
             L10 += gx[i] * s1
             L11 += wx[i] * q1
         chunk.v[0, p], chunk.v[1, p] = v0, v1
-        k = 4.0 * inverse
-        chunk.C[0, 0, p], chunk.C[0, 1, p], chunk.C[1, 0, p], chunk.C[1, 1, p] = k * C00, k * C01, k * C10, k * C11
+        chunk.C[0, 0, p], chunk.C[0, 1, p], chunk.C[1, 0, p], chunk.C[1, 1, p] = inverse * C00, inverse * C01, inverse * C10, inverse * C11
         if basis_gradient:
             chunk.L[0, 0, p], chunk.L[0, 1, p], chunk.L[1, 0, p], chunk.L[1, 1, p] = inverse * L00, inverse * L01, inverse * L10, inverse * L11
         else:
-            chunk.L[0, 0, p], chunk.L[0, 1, p], chunk.L[1, 0, p], chunk.L[1, 1, p] = k * C00, k * C01, k * C10, k * C11
+            chunk.L[0, 0, p], chunk.L[0, 1, p], chunk.L[1, 0, p], chunk.L[1, 1, p] = inverse * C00, inverse * C01, inverse * C10, inverse * C11
 
 
 @scatter_scalar.register(Plane)
@@ -85,14 +81,13 @@ def _(space, gradient, x, first, chunk, count, nodes):
 def _(space, x, first, count, a, A, G, nodes):
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
-        i0, fx = locate(x[first + p, 0], inverse)
-        j0, fy = locate(x[first + p, 1], inverse)
-        wx, wy, gx, gy = weights(fx), weights(fy), slopes(fx), slopes(fy)
-        for i in range(3):
-            b, g = a[p] + A[0, p] * (i - 1 - fx) * h, G[0, p] * gx[i] * inverse
+        i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
+        j0, wy, gy, dy, _ = stencil(space.basis, x[first + p, 1] * inverse)
+        for i in range(len(wx)):
+            r, g = a[p] + A[0, p] * h * dx[i], G[0, p] * gx[i] * inverse
             row = (i0 + i) * n1 + j0
-            for j in range(3):
-                nodes[row + j] += wx[i] * wy[j] * (b + A[1, p] * (j - 1 - fy) * h) + g * wy[j] + G[1, p] * inverse * wx[i] * gy[j]
+            for j in range(len(wy)):
+                nodes[row + j] += wx[i] * wy[j] * (r + A[1, p] * h * dy[j]) + g * wy[j] + G[1, p] * inverse * wx[i] * gy[j]
 
 
 @gather_scalar.register(Plane)
@@ -100,23 +95,22 @@ def _(space, x, first, count, a, A, G, nodes):
 def _(space, x, first, count, nodes, value, slope, grad):
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):
-        i0, fx = locate(x[first + p, 0], inverse)
-        j0, fy = locate(x[first + p, 1], inverse)
-        wx, wy, gx, gy = weights(fx), weights(fy), slopes(fx), slopes(fy)
+        i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)
+        j0, wy, gy, _, by = stencil(space.basis, x[first + p, 1] * inverse)
         s, t0, t1, q0, q1 = 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(3):
+        for i in range(len(wx)):
             row = (i0 + i) * n1 + j0
             r, rd, rg = 0.0, 0.0, 0.0
-            for j in range(3):
+            for j in range(len(wy)):
                 u = nodes[row + j]
                 r += wy[j] * u
-                rd += wy[j] * (j - 1 - fy) * u
+                rd += by[j] * u
                 rg += gy[j] * u
             s += wx[i] * r
-            t0 += wx[i] * (i - 1 - fx) * r
+            t0 += bx[i] * r
             t1 += wx[i] * rd
             q0 += gx[i] * r
             q1 += wx[i] * rg
         value[p] = s
-        slope[0, p], slope[1, p] = 4.0 * inverse * t0, 4.0 * inverse * t1
+        slope[0, p], slope[1, p] = inverse * t0, inverse * t1
         grad[0, p], grad[1, p] = inverse * q0, inverse * q1

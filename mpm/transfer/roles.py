@@ -111,7 +111,7 @@ def new_chunk(D, like):
 
 @kernel(inline=True)
 def locate(x, inverse):
-    """Index of the first of the three nodes in a padded array, and f = x/h - nearest node."""
+    """Index of the first of the three nodes of the quadratic basis in a padded array, and f = x/h - nearest node."""
     s = x * inverse
     nearest = np.floor(s + 0.5)
     return int(nearest) + 1, s - nearest  # + PAD - 1
