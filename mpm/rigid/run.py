@@ -17,8 +17,8 @@ from mpm.rigid.newton import NewtonSteps
 from mpm.rigid.nodes import interpolate
 from mpm.rigid.system import System, make_system
 
-STEPS, FACTORS = 100, 400  # of a run through a latent front at the default tolerance: steps, and factorisations of Newton
-LARGE = 2e11  # operations of one factorisation that nobody waits for
+STEPS, FACTORS, LINEAR = 150, 500, 20  # of a run at the default tolerance: explicit steps, factorisations of Newton and of constant laws
+LARGE = 2e10  # multiply-adds of one factorisation that nobody waits for: 3 s
 
 
 @dataclass(frozen=True)
@@ -64,21 +64,48 @@ class RigidRun:
         return geometry.x, geometry.w
 
 
-def choose(system: System, method: Method, end: float):
-    """The method's object for one body. `auto`: implicit where kappa and alpha are constant, else what costs least by a count of operations;
-    where a band would be too large, explicit."""
-    linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant)
-    implicit = LinearSteps if linear else NewtonSteps
-    if method.kind == "implicit":
-        return implicit(system, method.tolerance, method.order)
+EVALUATION, PIVOT = 4e-10, 1.5e-10  # s a node and stencil entry (with its share of look-ups), s a multiply-add of the factorisation: measured
+
+
+def _costs(system: System, linear: bool, explicit: ChebyshevSteps | None, end: float) -> tuple[float, float]:
+    """Seconds that a run would take: (explicit, implicit)."""
     diff, nodes = system.geometry.nodes.diff, float(system.geometry.nodes.size)
     band = float(diff[-1]) + 1
-    if method.kind == "auto" and linear and nodes * band**2 < LARGE:
+    evaluations = 0.0 if explicit is None else STEPS * np.sqrt(1 + 1.54 * explicit.radius * end / STEPS)
+    return evaluations * nodes * (2 * len(diff) + 20) * EVALUATION, (LINEAR if linear else FACTORS) * nodes * band * (band + 40) * PIVOT
+
+
+def choose(system: System, method: Method, end: float):
+    """The method's object for one body. `auto`: implicit where kappa and alpha are constant and a factorisation is bearable, else what costs less."""
+    linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant)
+    implicit = LinearSteps if linear else NewtonSteps
+    bearable = float(system.geometry.nodes.size) * float(system.geometry.nodes.diff[-1]) ** 2 < LARGE
+    if method.kind == "implicit" or (method.kind == "auto" and linear and bearable):
         return implicit(system, method.tolerance, method.order)
     explicit = ChebyshevSteps(system, method.tolerance)
-    evaluations = STEPS * np.sqrt(1 + 1.54 * explicit.radius * end / STEPS)
-    cheaper = evaluations * nodes * (4 * len(diff) + 40) < FACTORS * nodes * band * (band + 8)
-    return explicit if method.kind == "explicit" or cheaper else implicit(system, method.tolerance, method.order)
+    cost, rival = _costs(system, linear, explicit, end)
+    return explicit if method.kind == "explicit" or cost < rival else implicit(system, method.tolerance, method.order)
+
+
+def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
+    """What `solve` would do, without doing it: unknowns, methods, limits [s], a guess at seconds, bytes of the matrices."""
+    method, axisymmetric = method or Method(), space == "axisymmetric"
+    dimension = 2 if axisymmetric else int(space)
+    origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
+    found = {"unknowns": 0, "methods": [], "limits": {}, "seconds": 0.0, "memory_bytes": 0}
+    for body in bodies:
+        system = make_system(body, axisymmetric, h, origin)
+        steps = choose(system, method, float(end))
+        explicit = isinstance(steps, ChebyshevSteps)
+        linear = isinstance(steps, LinearSteps)
+        shaped = system.geometry
+        found["unknowns"] += int(shaped.active.sum())
+        found["methods"].append(type(steps).__name__)
+        found["seconds"] += _costs(system, linear, steps if explicit else None, float(end))[0 if explicit else 1]
+        found["memory_bytes"] += 8 * int(shaped.mass.size * (5 + len(shaped.exchange)) + (0 if explicit else shaped.nodes.size * shaped.nodes.diff[-1]))
+        if explicit and steps.radius > 0:
+            found["limits"]["euler"] = min(found["limits"].get("euler", np.inf), 2 / steps.radius)
+    return found
 
 
 def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None):

@@ -1,6 +1,7 @@
 """Singly diagonally implicit Runge-Kutta methods, L-stable and stiffly accurate, with error estimate and dense output.
 
-ORDER4  Hairer & Wanner, Solving ODEs II, table IV.6.5 (gamma = 1/4, five stages), embedded order 3, continuous extension (6.17) of order 4
+ORDER4  Hairer & Wanner, Solving ODEs II, table IV.6.5 (gamma = 1/4, five stages), embedded order 3, continuous
+        extension (6.17): order 3 inside the step, as measured
 ORDER2  Alexander 1977 (gamma = 1 - 1/sqrt 2, two stages), embedded order 1, dense output of order 2
 
 Stages k_i of y' = f(y); y(t + s dt) = y + dt sum_i k_i w_i(s), w_i(s) = s (dense_i0 + s (dense_i1 + ...)), and w_i(1) = b_i = the last row of `a`.

@@ -63,14 +63,15 @@ def _hermite(f, df, step):
 def make_table(alpha, kappa, zero: float, coldest: float, hottest: float) -> Table:
     """The table of the laws alpha(theta), kappa(theta) for temperatures from `coldest` to `hottest` [K], a tenth of the span added at both ends."""
     margin = 0.1 * (hottest - coldest) + 1.0
-    low, high = enthalpies(alpha, zero, np.array([coldest - margin, hottest + margin]))
+    rising = enthalpies(alpha, zero, np.linspace(coldest - margin, hottest + margin, PIECES))
+    low, high = rising[0], rising[-1]
     n = PIECES
     while True:
         ends = np.linspace(low, high, n + 1)
         step = (high - low) / n
         at = sample(alpha, kappa, zero, ends, coldest)
         middle = sample(alpha, kappa, zero, ends[:-1] + 0.5 * step, coldest)
-        if not (np.isfinite(at).all() and (at[:, 1] > 0).all() and (at[:, 3] >= 0).all()):
+        if not (np.isfinite(at).all() and (np.diff(rising) > 0).all() and (at[:, 1] > 0).all() and (at[:, 3] >= 0).all()):
             raise ValueError(f"alpha must be positive and kappa not negative between {coldest - margin:.6g} and {hottest + margin:.6g} K")
         tables = [_hermite(at[:, k], at[:, k + 1], step) for k in (0, 2)]
         error = max(np.abs(c[1:-1] @ [1, 0.5, 0.25, 0.125] - middle[:, k]).max() / (np.ptp(at[:, k]) or 1.0) for c, k in zip(tables, (0, 2), strict=True))
