@@ -2,6 +2,7 @@
 
 run_point(experiment, beat) -> Run      warm(experiment): compile what it needs      estimate(experiment): what it will cost
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
+In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
 
 import numpy as np
@@ -14,7 +15,11 @@ def run_point(experiment, beat=None) -> Run:
     from mpm.verification import exact_solution
 
     exact = exact_solution(experiment)
-    if experiment.moving:
+    if experiment.grid.dimension == 0:
+        from mpm.scene.point import run_zero
+
+        run = run_zero(experiment, exact, beat)
+    elif experiment.moving:
         from mpm.scene.build import build
         from mpm.simulation import simulate
 
@@ -60,7 +65,9 @@ def warm(experiment) -> None:
     from mpm.config import load
 
     short = experiment.resolved()
-    if experiment.moving:
+    if experiment.grid.dimension == 0:
+        short["time"]["end"] = experiment.time.end * 1e-3
+    elif experiment.moving:
         from mpm.integrate.timestep import limits
         from mpm.scene.build import build
         from mpm.simulation import Clock
@@ -79,4 +86,8 @@ def estimate(experiment) -> dict:
     """Size, limits and cost of one point, without running it."""
     from mpm import costs
 
+    if experiment.grid.dimension == 0:
+        from mpm.scene import point
+
+        return point.estimate(experiment)
     return costs.estimate_moving(experiment) if experiment.moving else costs.estimate_rigid(experiment)

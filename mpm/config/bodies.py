@@ -6,7 +6,8 @@ from pydantic import model_validator
 from pydantic_core import core_schema
 
 from mpm.config.base import Kind, Model, doc, one_of, problem
-from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, Quantity, Temperature, Velocity
+from mpm.config.loading import Strains
+from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, PerLength, Quantity, Temperature, Velocity
 
 Point = tuple[Coordinate, ...]
 
@@ -68,6 +69,14 @@ class Polygon(Kind):
     vertices: tuple[Point, ...] = doc(min_length=3)
 
 
+class MaterialPoint(Kind):
+    """No extent: one state, carried along `loading`, exchanging heat as a lumped body (dimension 0)."""
+
+    kind: ClassVar[str] = "point"
+    surface_to_volume: PerLength | None = doc(None, description="area of the surface over the volume, where it exchanges heat: 6 over the edge of a cube")
+    strain: Strains = doc(Strains(), description="elastic strain at the start")
+
+
 class Spin:
     """Annotation of an angular velocity: one number about the origin of the plane, three in 3-D."""
 
@@ -85,7 +94,7 @@ class Spin:
         return tuple(map(self.quantity.validate, value)) if isinstance(value, list | tuple) else self.quantity.validate(value)
 
 
-SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon)
+SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon, MaterialPoint)
 
 
 class Body(Model):

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from mpm.config import rules_output as output
+from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
 from mpm.config.explain import Finding
 from mpm.config.loose import Unknown
@@ -74,4 +75,9 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (output.snapshots, once),
     (scene.method, once),
     (output.exact, once),
+    (point.grid, once),
+    (point.body, each("bodies")),
+    (point.loading, once),
+    (point.stages, once),
+    (point.output, once),
 ]

@@ -12,6 +12,7 @@ from mpm.config.base import Kind, Model, doc
 from mpm.config.bodies import Body
 from mpm.config.boundary import Surface, Wall
 from mpm.config.laws import Constant
+from mpm.config.loading import Stage
 from mpm.config.materials import Material
 from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
@@ -32,6 +33,7 @@ class Experiment(Model):
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
     gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
+    loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")
     time: Clock
     method: Method = Method()
     output: Output = Output()
@@ -97,7 +99,7 @@ class Experiment(Model):
             return None
         data = plain(value, defaults=False)
         if section == "method" and not any(self.method.offset):
-            data.pop("offset")
+            data.pop("offset", None)
         if section == "walls":
             data = {side: wall for side, wall in data.items() if wall != {"slip": {}}}
         if section == "output" and "probes" in data:

@@ -13,9 +13,9 @@ Offset = Annotated[float, Quantity("", "offset in cells", least=-0.5, most=0.5)]
 class Grid(Model):
     """The domain [0, size] and its cells."""
 
-    dimension: Dimension = doc(description="0, 1, 2 (plane strain), axisymmetric (r, z) or 3")
-    size: tuple[Length, ...] = doc(description="extent of the domain, one length a direction")
-    cell: Length = doc(description="edge of a cell")
+    dimension: Dimension = doc(description="0 (a material point), 1, 2 (plane strain), axisymmetric (r, z) or 3")
+    size: tuple[Length, ...] = doc((), description="extent of the domain, one length a direction")
+    cell: Length | None = doc(None, description="edge of a cell")
     basis: Annotated[Literal["linear", "quadratic", "cubic"], Choice()] = doc("quadratic", description="B-splines of the grid")
 
     @property

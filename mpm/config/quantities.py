@@ -133,6 +133,7 @@ LENGTH = Quantity("m", "length")
 TIME = Quantity("s", "time", above=0)
 
 Length = Annotated[float, Quantity("m", "length", above=0)]
+PerLength = Annotated[float, Quantity("1/m", "surface to volume ratio", above=0)]
 Coordinate = Annotated[float, LENGTH]
 Time = Annotated[float, TIME]
 TimeOrAuto = Annotated[float | str, Auto(TIME)]

@@ -38,6 +38,8 @@ def names(experiment: Any) -> Iterator[Finding]:
 
 def grid(experiment: Any) -> Iterator[Finding]:
     size, cell = experiment.grid.size, experiment.grid.cell
+    if cell is None or not size:
+        return  # rules_point.py says what is missing, and what is not wanted
     yield from vector(experiment, ("grid", "size"), size, "the size")
     for index, length in enumerate(size):
         if cell > length * (1 + 1e-9):

@@ -20,6 +20,9 @@ def tidy(part: Any) -> None:
             part.pop("title")
         if isinstance(part.get("default"), dict):
             part.pop("default")
+        for choice in part.get("anyOf", ()):
+            if "x-unit" in choice and "x-unit" not in part:  # a quantity or nothing
+                part["x-unit"] = choice.pop("x-unit")
         if isinstance(unit := part.get("x-unit"), str):
             part.pop("x-unit")
             part["description"] = f"{part.get('description', '')} [{unit}]".strip()

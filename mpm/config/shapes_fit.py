@@ -4,10 +4,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from mpm.config.bodies import Ball, Box, Cylinder, Polygon, Ring
+from mpm.config.bodies import Ball, Box, Cylinder, MaterialPoint, Polygon, Ring
 
-WHERE = {Box: (1, 2, "axisymmetric", 3), Ball: (1, 2, "axisymmetric", 3), Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric")}
-POINTS = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",)}
+ALL = (1, 2, "axisymmetric", 3)
+WHERE = {Box: ALL, Ball: ALL, Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric"), MaterialPoint: (0,)}
+POINTS = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",), MaterialPoint: ()}
 ROUND_OFF = 1e-9
 
 
@@ -53,6 +54,8 @@ def bounds(shape: Any, dimension: Any) -> tuple[list[float], list[float]]:
 
 def outside(shape: Any, dimension: Any, size: tuple[float, ...]) -> str:
     """In words, where a shape leaves the domain; empty if it does not."""
+    if isinstance(shape, MaterialPoint):
+        return ""
     low, high = bounds(shape, dimension)
     for index, (a, b, length) in enumerate(zip(low, high, size, strict=True)):
         if a < -ROUND_OFF * length or b > length * (1 + ROUND_OFF):

@@ -57,9 +57,16 @@ TABLE = [
     ("J.max", "J", "1", SERIES, "largest volume ratio det F"),
     ("pressure.mean", "p", "Pa", SERIES, "mean pressure, weighted with volume"),
     ("strain.max", "ε", "1", SERIES, "largest principal Hencky strain"),
+    # a material point (grid.dimension 0), along its principal directions
+    *((f"stress.{a}{a}", f"σ{a}{a}", "Pa", SERIES, f"Cauchy stress along {a}, positive in tension") for a in "xyz"),
+    *((f"strain.{a}{a}", f"ε{a}{a}", "1", SERIES, f"Hencky strain along {a}") for a in "xyz"),
+    *((f"strain.elastic_{a}{a}", "", "1", SERIES, f"elastic Hencky strain along {a}") for a in "xyz"),
+    ("kirchhoff.p", "p", "Pa", SERIES, "Kirchhoff pressure, in which flow is written"),
+    ("kirchhoff.q", "q", "Pa", SERIES, "von Mises measure of the Kirchhoff stress"),
     # errors against the exact solution that a config names
     ("error_l2", "", "K", SERIES, "root-mean-square error against the exact solution"),
     ("error_max", "", "K", SERIES, "largest error against the exact solution"),
+    ("error_relative", "", "1", SERIES, "largest error against the exact solution, over the largest value of each quantity"),
     # one number a point
     ("status", "", "1", POINT, "outcome of the point"),
     ("error", "", "1", POINT, "why the point is not ok"),
@@ -96,6 +103,8 @@ TABLE = [
     *((f"extent.{a}", "", "m", SERIES, f"extent along {a}") for a in AXES),
 ]
 
+AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
+NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total")
 FIELDS_GRID = ("temperature", "velocity", "density")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
@@ -134,6 +143,8 @@ def describe(name: str) -> Variable:
         unit = "°C" if found.unit == "degC" else "K"
         return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
     field, _, probe = name.partition("_")
+    if field == "error" and probe in VARIABLES:
+        return replace(VARIABLES[probe], name=name, symbol="", long_name=f"error of {VARIABLES[probe].long_name}")
     if field == "misfit" and probe:
         return Variable(name, "", "K", POINT, f"root-mean-square difference from the temperature measured at {probe.replace('_', ' ')}")
     if field == "measured" and probe.startswith("temperature_"):
@@ -145,5 +156,9 @@ def describe(name: str) -> Variable:
 
 def fits(observable: str, dimension: int | str) -> bool:
     """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
+    if observable.startswith(AT_A_POINT) and observable != "strain.max":
+        return dimension == 0
+    if dimension == 0 and observable in NOT_AT_A_POINT:
+        return False
     axis = observable[-1] if observable[-2:-1] in (".", "_") else ""
     return axis not in AXES or axis in {0: "", 1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}[dimension]

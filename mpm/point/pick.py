@@ -1,0 +1,100 @@
+"""Laws of arrays: one NamedTuple for a batch, with an array in place of every number; `pick(law, i)` is the law of point i.
+
+So kinds stay types and values stay run-time arguments: a batch of any size and any values shares one compiled kernel.
+"""
+
+import numpy as np
+
+from mpm.jit import role
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, Table
+from mpm.point.state import Lumped, NoConduction, Rigid
+from mpm.state import Expansion, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Thermal
+
+
+@role
+def pick(law, i):
+    """The law of point i. Arrays of a point's own (tables, the temperature of `Thermal`) are views: to write into them changes the batch."""
+    raise TypeError(f"{type(law).__name__} cannot be batched")
+
+
+def pick_same(law, i):
+    return law
+
+
+for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating):
+    pick.register(absent, pick_same)
+
+
+@pick.register(Hencky)
+def _(law, i):
+    return Hencky(law.mu[i], law.lam[i])
+
+
+@pick.register(Constant)
+def _(law, i):
+    return Constant(law.constant[i])
+
+
+@pick.register(Bump)
+def _(law, i):
+    return Bump(law.base[i], law.heat[i], law.at[i], law.width[i])
+
+
+@pick.register(Logistic)
+def _(law, i):
+    return Logistic(law.low[i], law.high[i], law.at[i], law.width[i])
+
+
+@pick.register(Table)
+def _(law, i):
+    return Table(law.theta[i], law.c[i], law.h[i])
+
+
+@pick.register(EllipseRadial)
+def _(law, i):
+    return EllipseRadial(pick(law.M, i), pick(law.p0, i), pick(law.eta, i))
+
+
+@pick.register(EllipseClipped)
+def _(law, i):
+    return EllipseClipped(pick(law.M, i), pick(law.p0, i), pick(law.eta, i))
+
+
+@pick.register(Isothermal)
+def _(law, i):
+    return Isothermal(law.temperature[i])
+
+
+@pick.register(Thermal)
+def _(law, i):
+    return Thermal(law.theta[i], law.c[i], law.zero[i], pick(law.kappa, i), pick(law.alpha, i))
+
+
+@pick.register(Lumped)
+def _(law, i):
+    return Lumped(law.conductance[i], law.outside[i])
+
+
+@pick.register(Expansion)
+def _(law, i):
+    return Expansion(law.gamma[i], law.shift[i])
+
+
+@pick.register(Heating)
+def _(law, i):
+    return Heating(law.gamma[i], law.fraction[i])
+
+
+def kinds(law):
+    """What must be equal for laws to share a batch: types, and shapes of tables."""
+    if isinstance(law, tuple):
+        return (type(law), *map(kinds, law))
+    return np.shape(law)
+
+
+def stack(laws):
+    """One law of arrays from laws of the same kinds."""
+    first = laws[0]
+    if isinstance(first, tuple):
+        return type(first)(*(stack(list(column)) for column in zip(*laws, strict=True)))
+    return np.array(laws, dtype=np.float64)

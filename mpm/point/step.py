@@ -1,0 +1,265 @@
+"""One step of a material point: the order of physics.md 4, steps 3 to 8, without a grid.
+
+exchange or prescribed temperature -> strain -> return map -> local heating along the adiabat and of dissipation -> stress at the new temperature.
+Where a direction has its stress prescribed, the strain that gives it is found by Newton's method on this whole step: the end of the step has the
+stress to round-off. Slopes by differences, so that every law and coupling is served; a step that does not bring the residual down is halved.
+"""
+
+import math
+
+from mpm.heat.local import heat_locally, rise, temperature, thermal_stress
+from mpm.jit import kernel, role
+from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, energy, enthalpy, flow, moduli, stress, value
+from mpm.point.state import STRESS, Lumped, Rigid
+from mpm.state import Isothermal, NoExchange, Thermal
+
+EPS = 2.3e-16
+RELAXATION, YIELD, CONSTANT, RAMP = 100.0, 20.0, 100.0, 1.0  # steps a relaxation time, a yield strain, a time constant; kelvin a step
+
+
+@stress.register(Rigid)
+def _(law, e1, e2, e3, thermal):
+    return 0.0, 0.0, 0.0
+
+
+@energy.register(Rigid)
+def _(law, e1, e2, e3):
+    return 0.0
+
+
+@role
+def put(thermal, theta):
+    """Set the temperature of the point [K]."""
+    raise TypeError(f"no temperature in {type(thermal).__name__}")
+
+
+@put.register(Isothermal)
+def _(thermal, theta):
+    return None
+
+
+@put.register(Thermal)
+def _(thermal, theta):
+    thermal.theta[0] = theta - thermal.zero
+
+
+@role
+def content(thermal):
+    """Specific enthalpy [J/kg]; 0 without heat."""
+    raise TypeError(f"no heat in {type(thermal).__name__}")
+
+
+@content.register(Isothermal)
+def _(thermal):
+    return 0.0
+
+
+@content.register(Thermal)
+def _(thermal):
+    return enthalpy(thermal.alpha, thermal.zero + thermal.theta[0])
+
+
+@role
+def exchange(law, thermal, density, swell, dt):
+    """Exchange heat for `dt`; returns the heat gained [J/m3 of reference]."""
+    raise TypeError(f"no exchange {type(law).__name__}")
+
+
+@exchange.register(NoExchange)
+def _(law, thermal, density, swell, dt):
+    return 0.0
+
+
+@exchange.register(Lumped)
+def _(law, thermal, density, swell, dt):
+    # Exact for constant alpha. Otherwise alpha of the middle of the step (order 2), the heat through enthalpy and never past the surroundings.
+    theta = thermal.zero + thermal.theta[0]
+    gap = law.outside - theta
+    flux = law.conductance * swell ** (2.0 / 3.0)
+    capacity = density * value(thermal.alpha, theta)
+    half = -capacity * gap * math.expm1(-0.5 * dt * flux / capacity)
+    capacity = density * value(thermal.alpha, theta + rise(thermal.alpha, theta, half / density))
+    heat = -capacity * gap * math.expm1(-dt * flux / capacity)
+    most = density * (enthalpy(thermal.alpha, law.outside) - enthalpy(thermal.alpha, theta))
+    if abs(heat) >= abs(most):
+        thermal.theta[0] = law.outside - thermal.zero
+        return most
+    thermal.theta[0] += rise(thermal.alpha, theta, heat / density)
+    return heat
+
+
+@role
+def time_constant(law, thermal, density):
+    """R0 alpha/conductance of the lumped body [s]; inf without exchange."""
+    raise TypeError(f"no exchange {type(law).__name__}")
+
+
+@time_constant.register(NoExchange)
+def _(law, thermal, density):
+    return math.inf
+
+
+@time_constant.register(Lumped)
+def _(law, thermal, density):
+    if not 0.0 < law.conductance < math.inf:
+        return math.inf
+    return density * value(thermal.alpha, thermal.zero + thermal.theta[0]) / law.conductance
+
+
+@role
+def relaxation(law, elastic, theta):
+    """Shortest relaxation time at held strain [s] and smallest yield strain [-] of a flow law."""
+    raise TypeError(f"no flow {type(law).__name__}")
+
+
+@relaxation.register(NoFlow)
+def _(law, elastic, theta):
+    return math.inf, math.inf
+
+
+def relaxation_ellipse(law, elastic, theta):
+    lam, mu = moduli(elastic)
+    K, M, p0, eta = lam + 2.0 * mu / 3.0, value(law.M, theta), value(law.p0, theta), value(law.eta, theta)
+    return min(eta / (3.0 * mu), eta * p0 * p0 / K), M * min(1.0 / (3.0 * mu), p0 / K)
+
+
+relaxation.register(EllipseRadial, relaxation_ellipse)
+relaxation.register(EllipseClipped, relaxation_ellipse)
+
+
+@kernel
+def shares(matter, speed, ramp):
+    """Automatic limits of the step [s]: fractions of the relaxation time, of the time to strain by the yield strain at the rate `speed` [1/s], of a kelvin at
+    the rate `ramp` [K/s] of a prescribed temperature (laws of temperature follow it), and of the time constant of exchange. Without viscosity: no relaxation.
+    """
+    time, strain = relaxation(matter.flow, matter.elastic, temperature(matter.thermal, 0))
+    relax = time / RELAXATION if time > 0.0 else math.inf
+    bend = strain / (YIELD * speed) if speed > 0.0 else math.inf
+    warm = RAMP / ramp if ramp > 0.0 and strain < math.inf else math.inf
+    return relax, bend, warm, time_constant(matter.exchange, matter.thermal, matter.density) / CONSTANT
+
+
+@kernel
+def answer(matter, e, d, base, held, dt):
+    """Elastic strains and Kirchhoff stresses at the end of a step: (e1, e2, e3, t1, t2, t3, dissipated, heated, ok) [-, Pa, J/m3].
+
+    e: elastic strains before, d: increments of total strain, base: temperature before local heating [K]; `held` keeps it there.
+    Depends on nothing else; leaves the temperature of the end of the step in `matter.thermal`.
+    """
+    put(matter.thermal, base)
+    thermal = thermal_stress(matter.expansion, matter.thermal, 0)
+    e1, e2, e3, lost, ok = flow(matter.flow, matter.elastic, e[0] + d[0], e[1] + d[1], e[2] + d[2], thermal, temperature(matter.thermal, 0), dt)
+    gained = heat_locally(matter.heating, matter.thermal, 0, matter.density, (e1 - e[0]) + (e2 - e[1]) + (e3 - e[2]), lost)
+    if held:
+        put(matter.thermal, base)
+    t1, t2, t3 = stress(matter.elastic, e1, e2, e3, thermal_stress(matter.expansion, matter.thermal, 0))
+    return e1, e2, e3, t1, t2, t3, lost, gained, ok
+
+
+@kernel(inline=True)
+def residual(matter, e, d, total, kind, target, base, held, dt, r):
+    """r_k = tau_k - J sigma_k where the stress is prescribed, 0 elsewhere; returns (largest |r|, ok)."""
+    _, _, _, t1, t2, t3, _, _, ok = answer(matter, e, d, base, held, dt)
+    J = math.exp((total[0] + d[0]) + (total[1] + d[1]) + (total[2] + d[2]))
+    r[0] = t1 - J * target[0] if kind[0] == STRESS else 0.0
+    r[1] = t2 - J * target[1] if kind[1] == STRESS else 0.0
+    r[2] = t3 - J * target[2] if kind[2] == STRESS else 0.0
+    return max(abs(r[0]), abs(r[1]), abs(r[2])), ok and math.isfinite(r[0] + r[1] + r[2])
+
+
+@kernel
+def solve3(A, r, x):
+    """x = A^-1 r by elimination with row pivots; A and r are used up. False where A is singular."""
+    for k in range(3):
+        best = k
+        for i in range(k + 1, 3):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        if not abs(A[best, k]) > 0.0:
+            return False
+        for j in range(3):
+            A[k, j], A[best, j] = A[best, j], A[k, j]
+        r[k], r[best] = r[best], r[k]
+        for i in range(k + 1, 3):
+            share = A[i, k] / A[k, k]
+            for j in range(k, 3):
+                A[i, j] -= share * A[k, j]
+            r[i] -= share * r[k]
+    for i in range(2, -1, -1):
+        s = r[i]
+        for j in range(i + 1, 3):
+            s -= A[i, j] * x[j]
+        x[i] = s / A[i, i]
+    return True
+
+
+@kernel
+def equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
+    """Find the increments d[k] of the directions whose stress is prescribed, from a first guess in d. work (8, 3). False: no equilibrium was found."""
+    A, r, x, near, trial = work[0:3], work[3], work[4], work[5], work[6]
+    lam, mu = moduli(matter.elastic)
+    stiff = lam + 2.0 * mu
+    worst, ok = residual(matter, e, d, total, kind, target, base, held, dt, r)
+    if not ok:
+        for k in range(3):
+            d[k] = 0.0 if kind[k] == STRESS else d[k]
+        worst, ok = residual(matter, e, d, total, kind, target, base, held, dt, r)
+    for _ in range(60):
+        size = max(abs(e[0]) + abs(d[0]), abs(e[1]) + abs(d[1]), abs(e[2]) + abs(d[2]))
+        put(matter.thermal, base)
+        scale = stiff * size + abs(thermal_stress(matter.expansion, matter.thermal, 0)) + max(abs(target[0]), abs(target[1]), abs(target[2]))
+        if not ok:
+            return False
+        if worst <= 4.0 * EPS * scale:
+            return True
+        h = 1e-7 * scale / stiff
+        for k in range(3):
+            for i in range(3):
+                A[i, k] = 1.0 if i == k else 0.0
+            if kind[k] == STRESS:
+                kept = d[k]
+                d[k] = kept + h
+                actual = d[k] - kept
+                residual(matter, e, d, total, kind, target, base, held, dt, near)
+                d[k] = kept
+                for i in range(3):
+                    if kind[i] == STRESS:
+                        A[i, k] = (near[i] - r[i]) / actual
+        if not solve3(A, r, x):
+            return False
+        share, better = 1.0, False
+        for _ in range(40):
+            for k in range(3):
+                trial[k] = d[k] - share * x[k] if kind[k] == STRESS else d[k]
+            now, ok = residual(matter, e, trial, total, kind, target, base, held, dt, near)
+            if ok and now < worst:
+                better = True
+                break
+            share *= 0.5
+        if not better:  # round-off, or no way down
+            return worst <= 1e-12 * scale
+        for k in range(3):
+            d[k] = trial[k]
+            r[k] = near[k]
+        if now <= 1e-13 * scale and now > 0.25 * worst:
+            return True  # as far down as round-off lets it
+        worst = now
+    return False
+
+
+@kernel
+def step(matter, e, total, d, kind, target, base, held, dt, work):
+    """Carry the point through one step from temperature `base`: fills d where the stress is prescribed, updates e and total.
+
+    Returns (dissipated, heated, ok) [J/m3].
+    """
+    if kind[0] == STRESS or kind[1] == STRESS or kind[2] == STRESS:
+        if not equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
+            return 0.0, 0.0, False
+    e1, e2, e3, _, _, _, lost, gained, ok = answer(matter, e, d, base, held, dt)
+    e[0], e[1], e[2] = e1, e2, e3
+    for k in range(3):
+        total[k] += d[k]
+    return lost, gained, ok
+
+
