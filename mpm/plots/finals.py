@@ -39,7 +39,7 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     for row, colour in zip(shown, colours, strict=True):
         ax.plot(x.positions[order], row[order], "-o", color=colour, clip_on=False, zorder=3)
     x.apply(ax)
-    ax.set_ylabel(view.label(name, scale.units))
+    ax.set_ylabel(words.wrapped(view.label(name, scale.units), 40))
     wide(ax, shown, name)
     values_key = [] if lines is None or not key else keys(ax, lines, colours)
     reasons_key = marks(ax, view, name, x, lines, at, values, colours)

@@ -119,6 +119,8 @@ def families(view: View, lines: Axis | None) -> Any:
     fig = figure(view.title, 4.8 if rows == 1 else 3.9 * rows)
     grid = fig.subplots(rows, columns, squeeze=False).ravel()
     at = dict(view.chosen)
+    if lines is not None and lines.dim == view.design:
+        grid[0].set_title(f"Some points of the sample, by {words.symbol(lines.name) or lines.name}; all parameters differ")
     for ax, names in zip(grid, groups, strict=False):
         series.panel(ax, view, names[:5], lines, at)
         if told := series.agreement(view, names, at):
@@ -146,7 +148,7 @@ def all_finals(view: View) -> Any:
         fig = figure(view.title, 4.6 if rows == 1 else 3.9 * rows)
         grid = fig.subplots(rows, columns, squeeze=False).ravel()
         for ax, name in zip(grid, names, strict=False):
-            finals.panel(ax, view, name, x, lines, dict(view.chosen))
+            finals.panel(ax, view, name, x, lines, dict(view.chosen), key=name == names[0])
         for ax in grid[len(names) :]:
             ax.set_axis_off()
         return fig

@@ -74,22 +74,12 @@ def dress(ax: Any, view: View, axis: Axis, name: str, scale: words.Scale, values
     wide(ax, scale(values), name)
     ax.margins(0.08, 0.12)
     if first:
-        ax.set_ylabel(wrapped(view.label(name, scale.units)), fontsize=9)
+        ax.set_ylabel(words.wrapped(view.label(name, scale.units), 24), fontsize=9)
     if last:
         ax.set_xlabel(words.with_units(words.symbol(axis.name) or axis.name.rsplit(".", 1)[-1], axis.units))
     else:
         ax.tick_params(labelbottom=False)
     ax.tick_params(labelsize=8.5)
-
-
-def wrapped(text: str, width: int = 24) -> str:
-    """A label in lines that fit a small panel."""
-    lines = [""]
-    for word in text.split(" "):
-        if lines[-1] and len(lines[-1]) + len(word) >= width:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return "\n".join(lines)
 
 
 def crosses(ax: Any, view: View, places: np.ndarray, bad: np.ndarray) -> None:
@@ -110,10 +100,7 @@ def look(mark: str, text: str) -> dict[str, Any]:
 def failures(fig: Any, view: View) -> None:
     """What the crosses mean, under the panels."""
     rows = list(view.counted_reasons().items())[: len(MARKS)]
-    handles = [
-        Line2D([], [], label=f"{text} ({words.counted(count, 'point')})", **look(mark, text))
-        for mark, (text, count) in zip(MARKS, rows, strict=False)
-    ]
+    handles = [Line2D([], [], label=f"{text} ({words.counted(count, 'point')})", **look(mark, text)) for mark, (text, count) in zip(MARKS, rows, strict=False)]
     if handles:
         fig.legend(handles=handles, loc="outside lower left", ncols=min(3, len(handles)), handlelength=1.0)
 

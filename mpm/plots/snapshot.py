@@ -129,6 +129,7 @@ def particles(view: View, group: Any) -> Any:
         return empty(view, "The chosen point has no particles in its snapshots.")
     flat = everything.shape[1] > 1
     x, y = 0, everything.shape[1] - 1
+    letters = "rz" if (view.config.get("grid") or {}).get("dimension") == "axisymmetric" else "xyz"
     length, scale = words.scale(everything, "m"), words.scale(np.concatenate(values), group[name].attrs.get("units", "1"), words.is_temperature(name))
     low, high = length(everything.min(axis=0)), length(everything.max(axis=0))
     fig, axes = canvas(view, len(chosen), float((high[y] - low[y]) / max(high[x] - low[x], 1e-300)) if flat else 0.6)
@@ -139,10 +140,11 @@ def particles(view: View, group: Any) -> Any:
         upward = length(place[order, y]) if flat else scale(value[order])
         image = ax.scatter(length(place[order, x]), upward, c=scale(value[order]), s=size, **look)
         ax.set_title(text)
-        ax.set_xlabel(words.with_units("xyz"[x], length.units))
+        ax.margins(0.08)
+        ax.set_xlabel(words.with_units(letters[x], length.units))
         if flat:
             ax.set_aspect("equal")
-    axes[0].set_ylabel(words.with_units("xyz"[y], length.units) if flat else words.with_units(name, scale.units))
+    axes[0].set_ylabel(words.with_units(letters[y], length.units) if flat else words.with_units(name, scale.units))
     bar(fig, axes, image, group, name, scale)
     fig.supxlabel(where(view), fontsize=9.5)
     return fig

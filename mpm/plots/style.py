@@ -113,7 +113,7 @@ def broken(row: list[Any], room: float) -> list[list[Any]]:
     lines: list[list[Any]] = []
     left = 0.0
     for handle in row:
-        width = 5.6 * len(handle.get_label()) + (1.9 + handle_length(handle)) * SMALL
+        width = 5.2 * len(handle.get_label()) + (1.9 + handle_length(handle)) * SMALL
         if not lines or width > left:
             lines.append([])
             left = room

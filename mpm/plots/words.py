@@ -106,6 +106,16 @@ def with_units(text: str, units: str) -> str:
     return f"{text} [{units}]" if units else text
 
 
+def wrapped(text: str, width: int) -> str:
+    """A label in lines of about `width` letters."""
+    lines = [""]
+    for word in text.split(" "):
+        if lines[-1] and len(lines[-1]) + len(word) >= width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return "\n".join(lines)
+
+
 def reason(status: str, error: str) -> str:
     """Why a point has no number, without what differs from point to point: `diverged: det F <= 0`."""
     text = re.split(r"\s+at particle|\s+at node|,? at t\s*=|, t\s*=|, step \d|\n", error.strip())[0].strip(" ,;")
@@ -114,7 +124,7 @@ def reason(status: str, error: str) -> str:
         return status
     if not text.startswith(status):
         text = f"{status}: {text}"
-    return text if len(text) <= 60 else text[:59] + "…"
+    return text if len(text) <= 72 else text[:71] + "…"
 
 
 def counted(count: int, one: str) -> str:
