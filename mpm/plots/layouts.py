@@ -121,6 +121,8 @@ def families(view: View, lines: Axis | None) -> Any:
     at = dict(view.chosen)
     if lines is not None and lines.dim == view.design:
         grid[0].set_title(f"Some points of the sample, by {words.symbol(lines.name) or lines.name}; all parameters differ")
+    elif lines is not None:
+        grid[0].set_title(", ".join(axis.says(at[axis.dim]) for axis in view.axes if axis is not lines))
     for ax, names in zip(grid, groups, strict=False):
         series.panel(ax, view, names[:5], lines, at)
         if told := series.agreement(view, names, at):

@@ -142,6 +142,10 @@ def agreement(view: View, names: list[str], at: dict[str, int]) -> str:
 
 def note(ax: Any, text: str) -> None:
     """A line of small print between the panel and its title."""
-    ax.set_title(ax.get_title(loc="left"), pad=20)
+    title = ax.get_title(loc="left")
+    if not title:
+        ax.set_title(words.title_case(text), fontsize=8.5, color=QUIET)
+        return
+    ax.set_title(title, pad=20)
     at = {"xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
     ax.annotate(words.title_case(text), (0.0, 1.0), fontsize=8.5, color=QUIET, **at).set_in_layout(False)  # long words must not narrow the panel
