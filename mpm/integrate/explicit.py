@@ -29,13 +29,13 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     """
     chunk = new_chunk(gravity.shape[0], nodes)
     change = np.zeros_like(chunk.v)
-    now = 0
     shape = extents(space)
     empty(shape, boxes[0])
     empty(shape, boxes[1])
     if not open_all(space, gradient, scheme, bodies, chunk, nodes[0], force[0], boxes[0], dt, reports):
         return
     for step in range(steps):
+        now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
@@ -43,7 +43,6 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
         if wants_change(scheme):
             clear(force[now], shape, boxes[now].copy())
         clear(nodes[now], shape, boxes[now])
-        now = 1 - now
 
 
 @kernel
