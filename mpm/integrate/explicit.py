@@ -10,12 +10,11 @@ A chunk of particles stays in the first-level cache from gather to scatter.
 import numpy as np
 from numba import literal_unroll
 
-from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
 from mpm.jit import kernel
-from mpm.outcome import LEFT_GRID
+from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
 from mpm.transfer import CHUNK, carry, collect, new_chunk, spread, wants_change
 
@@ -29,13 +28,13 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     """
     chunk = new_chunk(gravity.shape[0], nodes)
     change = np.zeros_like(chunk.v)
+    now = 0
     shape = extents(space)
     empty(shape, boxes[0])
     empty(shape, boxes[1])
     if not open_all(space, gradient, scheme, bodies, chunk, nodes[0], force[0], boxes[0], dt, reports):
         return
     for step in range(steps):
-        now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
@@ -43,44 +42,59 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
         if wants_change(scheme):
             clear(force[now], shape, boxes[now].copy())
         clear(nodes[now], shape, boxes[now])
+        now = 1 - now
 
 
 @kernel
 def open_all(space, gradient, scheme, bodies, chunk, nodes, force, box, dt, reports):
     """First scatter of a run of steps; false where a particle cannot answer."""
-    b = 0
-    for body in literal_unroll(bodies):
-        x = body.particles.x
-        chunk.L[:] = 0.0
-        for first in range(0, x.shape[0], CHUNK):
-            count = min(CHUNK, x.shape[0] - first)
-            respond(space, gradient, body, chunk, first, count, 0.0, dt, reports[b])
-            if reports[b, CODE] != 0.0:
-                return False
-            spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box)
+    ok, b = True, 0
+    for body in literal_unroll(bodies):  # bodies of several types: Numba unrolls a loop without exits only
+        ok = ok and open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, reports[b])
         b += 1
+    return ok
+
+
+@kernel
+def open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, report):
+    """First scatter of one body."""
+    x = body.particles.x
+    chunk.L[:] = 0.0
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        respond(space, gradient, body, chunk, first, count, 0.0, dt, report)
+        if report[CODE] != 0.0:
+            return False
+        spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box)
     return True
 
 
 @kernel
 def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
     """Gather from buffer `now`, respond, and scatter on to the other unless it is the last step; false where a particle fails."""
-    b = 0
+    ok, b = True, 0
     for body in literal_unroll(bodies):
-        x = body.particles.x
-        for first in range(0, x.shape[0], CHUNK):
-            count = min(CHUNK, x.shape[0] - first)
-            collect(scheme, space, gradient, x, first, chunk, count, nodes[now], force[now], change)
-            carry(scheme, body.particles, first, chunk, count, change)
-            move(space, x, chunk, first, count, dt, reports[b])
-            if reports[b, CODE] == 0.0:
-                respond(space, gradient, body, chunk, first, count, dt, dt, reports[b])
-            if reports[b, CODE] != 0.0:
-                reports[b, STEP] = step
-                return False
-            if not last:
-                spread(scheme, space, gradient, x, first, chunk, count, nodes[1 - now], force[1 - now], boxes[1 - now])
+        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, last, reports[b])
         b += 1
+    return ok
+
+
+@kernel
+def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, last, report):
+    """One body's part of `pass_all`."""
+    x = body.particles.x
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        collect(scheme, space, gradient, x, first, chunk, count, nodes[now], force[now], change)
+        carry(scheme, body.particles, first, chunk, count, change)
+        move(space, x, chunk, first, count, dt, report)
+        if report[CODE] == 0.0:
+            respond(space, gradient, body, chunk, first, count, dt, dt, report)
+        if report[CODE] != 0.0:
+            report[STEP] = step
+            return False
+        if not last:
+            spread(scheme, space, gradient, x, first, chunk, count, nodes[1 - now], force[1 - now], boxes[1 - now])
     return True
 
 
@@ -129,8 +143,8 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
 
 @kernel
 def move(space, x, chunk, first, count, dt, report):
-    """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run (a NaN position too)."""
-    shape, inside = extents(space), room(space.basis)
+    """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
+    shape = extents(space)
     for p in range(count):
         i = first + p
         speed = 0.0
@@ -138,7 +152,7 @@ def move(space, x, chunk, first, count, dt, report):
             v = chunk.v[c, p]
             speed += v * v
             x[i, c] += dt * v
-            # Node i of an array lies at (i - PAD) h.
-            if not (inside - PAD) * space.h < x[i, c] < (shape[c] - 1 - PAD - inside) * space.h and report[CODE] == 0.0:
-                report[CODE], report[PARTICLE] = LEFT_GRID, i
+            # Node i of an array lies at (i - PAD) h; the stencil of x reaches one node to each side of the nearest.
+            if not (0.6 - PAD) * space.h < x[i, c] < (shape[c] - PAD - 1.6) * space.h and report[CODE] == 0.0:
+                report[CODE], report[PARTICLE] = NON_FINITE if np.isnan(x[i, c]) else LEFT_GRID, i
         report[SPEED] = max(report[SPEED], speed)
