@@ -138,7 +138,8 @@ class Worker:
 
 def main() -> None:
     """Started by `processes.Child` with the socket's descriptor and the runner's name as arguments."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; what to do about it is the parent's choice
+    for number in (signal.SIGINT, signal.SIGTERM):  # they reach the whole group; what to do about them is the parent's choice
+        signal.signal(number, signal.SIG_IGN)
     worker = Worker(int(sys.argv[1]), sys.argv[2])
     worker.live()
     os._exit(0)  # the listener sits in a read; nothing here is left to tidy

@@ -201,9 +201,9 @@ sys.exit(execute(load({config!r}), Path({out!r}), Options(jobs=2, runner="fake_r
 """
 
 
-def start(config, out, marks):
+def start(config, out, marks, **options):
     code = SCRIPT.format(root=str(ROOT), fakes=str(ROOT / "tests" / "fakes"), config=config, out=str(out))
-    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
     end = time.monotonic() + 20
     while len([row for row in marks() if row[0] == "run"]) < 2 and time.monotonic() < end:
         time.sleep(0.05)
@@ -235,6 +235,16 @@ def test_signals_stop_in_time_and_leave_no_orphan(config, tmp_path, marks, blows
     process.communicate(timeout=20)
     assert process.returncode == code
     assert all_gone({int(row[-1]) for row in marks()}, within - (time.monotonic() - began))
+
+
+def test_sigterm_to_the_whole_group_leaves_what_ran_pending(config, tmp_path, marks):
+    """As a batch system or `timeout` does it: the workers hear it too, and must not count as killed."""
+    process = start(config([fake.BRIEF, fake.SLOW]), tmp_path / "out", marks, start_new_session=True)
+    os.killpg(process.pid, signal.SIGTERM)
+    process.communicate(timeout=20)
+    assert process.returncode == 143
+    status = tree_of(tmp_path / "out" / "sweep.nc").status.values.tolist()
+    assert 3 not in status and 6 in status
 
 
 def test_ctrl_c_finishes_what_runs(config, tmp_path, marks):
