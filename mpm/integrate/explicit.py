@@ -10,6 +10,7 @@ A chunk of particles stays in the first-level cache from gather to scatter.
 import numpy as np
 from numba import literal_unroll
 
+from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
@@ -28,13 +29,13 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     """
     chunk = new_chunk(gravity.shape[0], nodes)
     change = np.zeros_like(chunk.v)
-    now = 0
     shape = extents(space)
     empty(shape, boxes[0])
     empty(shape, boxes[1])
     if not open_all(space, gradient, scheme, bodies, chunk, nodes[0], force[0], boxes[0], dt, reports):
         return
     for step in range(steps):
+        now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
@@ -42,7 +43,6 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
         if wants_change(scheme):
             clear(force[now], shape, boxes[now].copy())
         clear(nodes[now], shape, boxes[now])
-        now = 1 - now
 
 
 @kernel
@@ -144,7 +144,7 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
 @kernel
 def move(space, x, chunk, first, count, dt, report):
     """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
-    shape = extents(space)
+    shape, inside = extents(space), room(space.basis)
     for p in range(count):
         i = first + p
         speed = 0.0
@@ -152,7 +152,7 @@ def move(space, x, chunk, first, count, dt, report):
             v = chunk.v[c, p]
             speed += v * v
             x[i, c] += dt * v
-            # Node i of an array lies at (i - PAD) h; the stencil of x reaches one node to each side of the nearest.
-            if not (0.6 - PAD) * space.h < x[i, c] < (shape[c] - PAD - 1.6) * space.h and report[CODE] == 0.0:
+            # Node i of an array lies at (i - PAD) h.
+            if not (inside - PAD) * space.h < x[i, c] < (shape[c] - 1 - PAD - inside) * space.h and report[CODE] == 0.0:
                 report[CODE], report[PARTICLE] = NON_FINITE if np.isnan(x[i, c]) else LEFT_GRID, i
         report[SPEED] = max(report[SPEED], speed)
