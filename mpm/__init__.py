@@ -18,7 +18,7 @@ _PLACES = {
     "run": "mpm.sweep.api",
     "sweep": "mpm.sweep.api",
     "plan": "mpm.sweep.cases",
-    "estimate": "mpm.runner",
+    "estimate": "mpm.costs",
     "run_point": "mpm.runner",
     "Outcome": "mpm.outcome",
     "Run": "mpm.state",

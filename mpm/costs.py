@@ -2,10 +2,23 @@
 
 import math
 
-from mpm.runner import physics
+from mpm.scene.inventory import output_bytes, physics
 
 NS_PARTICLE_STEP = {1: 60, 2: 200, "axisymmetric": 220, 3: 450}
 BYTES_PARTICLE = {1: 120, 2: 200, "axisymmetric": 200, 3: 320}
+
+
+MOST_UNKNOWNS = 2_000_000
+STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
+
+
+def estimate(experiment) -> dict:
+    """particles, unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
+    if experiment.grid.dimension == 0:
+        from mpm.scene import point
+
+        return point.estimate(experiment)
+    return estimate_moving(experiment) if experiment.moving else estimate_rigid(experiment)
 
 
 def estimate_moving(experiment) -> dict:
@@ -37,40 +50,27 @@ def estimate_moving(experiment) -> dict:
 
 
 def estimate_rigid(experiment) -> dict:
-    """Unknowns from the bodies' extents; implicit steps have no limit of stability, so accuracy binds."""
+    """The bodies' equations are set up (milliseconds), not solved. Implicit steps have no limit of stability, so accuracy binds."""
+    from mpm.rigid import Method, outlook
     from mpm.scene.build import SceneError
+    from mpm.scene.rigid import rigid_bodies
     from mpm.scene.shapes import shape
 
-    unknowns = 0
+    grid, unknowns = experiment.grid, 0
     for body in experiment.bodies.values():
-        lower, upper = shape(body.shape, experiment.grid.dimension).bounds()
-        unknowns += math.prod(math.ceil(float(extent) / experiment.grid.cell) + 2 for extent in upper - lower)
-    if unknowns > 5_000_000:
-        raise SceneError(f"{unknowns} unknowns in a rigid body: a coarser grid.cell gives the same answer (the method is of order 3)")
-    curved = any(type(m.heat.alpha).kind != "constant" or type(m.heat.kappa).kind != "constant" for m in experiment.materials.values() if m.heat)
-    steps = 1000 if curved else 60
-    band = unknowns ** (0.5 if experiment.grid.directions == 2 else 0.66 if experiment.grid.directions == 3 else 0.0)
+        lower, upper = shape(body.shape, grid.dimension).bounds()
+        unknowns += math.prod(math.ceil(float(extent) / grid.cell) + 2 for extent in upper - lower)
+    if unknowns > MOST_UNKNOWNS:
+        raise SceneError(f"{unknowns} unknowns in rigid bodies, more than {MOST_UNKNOWNS}: take a coarser grid.cell (the method is of order 2 to 3)")
+    ahead = outlook(rigid_bodies(experiment), grid.dimension, grid.cell, end=experiment.time.end, method=Method(type(experiment.method.rigid).kind))
     return {
         "particles": 0,
-        "unknowns": unknowns,
-        "steps": steps,
-        "seconds": 0.02 + steps * unknowns * (30e-9 if curved else 20e-9 * (1 + band)),
-        "memory_bytes": 180_000_000 + int(unknowns * 8 * (100 + 4 * band)),
+        "unknowns": ahead["unknowns"],
+        "steps": STEPS_RIGID,
+        "seconds": 0.02 + ahead["seconds"],
+        "memory_bytes": 180_000_000 + ahead["memory_bytes"],
         "output_bytes": output_bytes(experiment, 0),
-        "limits": {},
+        "limits": ahead["limits"],
         "binds": "accuracy",
         "physics": physics(experiment),
     }
-
-
-def output_bytes(experiment, particles: int) -> int:
-    """Bytes of a point's file: series in float64, snapshots in float32 (grid) and float64 (particles), before compression."""
-    samples = math.ceil(experiment.time.end / experiment.output.every) + 1
-    size = 20_000 + samples * 8 * (25 + len(experiment.output.probes))
-    snapshots = experiment.output.snapshots
-    if snapshots is not None:
-        frames = math.ceil(experiment.time.end / snapshots.every) + 1
-        nodes = math.prod(round(s / experiment.grid.cell) + 1 for s in experiment.grid.size)
-        size += frames * (4 * nodes * len(snapshots.grid) + 8 * particles * len(snapshots.particles) * 2)
-    return size
-

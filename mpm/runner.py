@@ -1,12 +1,14 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
-run_point(experiment, beat) -> Run      warm(experiment): compile what it needs      estimate(experiment): what it will cost
+run_point(experiment, beat) -> Run      warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
 
 import numpy as np
 
+from mpm.costs import estimate
+from mpm.scene.inventory import physics
 from mpm.state import Run
 
 
@@ -43,23 +45,6 @@ def misfits(experiment, run: Run) -> dict[str, float]:
     return found
 
 
-def physics(experiment) -> dict[str, list[str]]:
-    """What is compiled for this config, and what is absent."""
-    present: set[str] = set()
-    for material in experiment.materials.values():
-        for part in ("elastic", "flow", "heat", "expansion"):
-            law = getattr(material, part)
-            if law is not None:
-                present.add(f"{part}: {type(law).kind}")
-        if material.heating is not None:
-            present |= {f"heating: {part}" for part in ("elastic", "dissipation") if getattr(material.heating, part) is not None}
-    present |= {"exchange: convection"} if any(s.convection is not None for s in experiment.surfaces) else set()
-    present |= {"gravity"} if experiment.gravity is not None else set()
-    said = {text.split(":")[0] for text in present}
-    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "gravity")
-    return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
-
-
 def warm(experiment) -> None:
     """Compile (or load from the cache) what the experiment needs, by a run of one output interval of its smallest steps."""
     from mpm.config import load
@@ -82,12 +67,4 @@ def warm(experiment) -> None:
     run_point(load(short))
 
 
-def estimate(experiment) -> dict:
-    """Size, limits and cost of one point, without running it."""
-    from mpm import costs
-
-    if experiment.grid.dimension == 0:
-        from mpm.scene import point
-
-        return point.estimate(experiment)
-    return costs.estimate_moving(experiment) if experiment.moving else costs.estimate_rigid(experiment)
+__all__ = ["estimate", "run_point", "warm"]

@@ -10,6 +10,7 @@ from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
 from mpm.scene.build import SceneError, elastic_law, law, output_times, stress_temperature_modulus
+from mpm.scene.inventory import output_bytes, physics
 from mpm.state import Expansion, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
 
 AXES = ("xx", "yy", "zz")
@@ -177,10 +178,8 @@ def lumped(experiment, name: str, body):
 
 def estimate(experiment) -> dict:
     """Size, limits and cost of one point, without running it: the automatic step at the start, at most 1000 an output interval."""
-    from mpm.costs import output_bytes
     from mpm.point.march import MOST as LEAST
     from mpm.point.step import shares
-    from mpm.runner import physics
 
     one = spot(experiment)
     plain = getattr(shares, "py_func", shares)  # nothing is compiled for a plan

@@ -1,0 +1,32 @@
+"""What a config holds, from the config alone: the physics that is compiled and what is absent, the bytes that a point writes."""
+
+import math
+
+
+def physics(experiment) -> dict[str, list[str]]:
+    """What is compiled for this config, and what is absent."""
+    present: set[str] = set()
+    for material in experiment.materials.values():
+        for part in ("elastic", "flow", "heat", "expansion"):
+            law = getattr(material, part)
+            if law is not None:
+                present.add(f"{part}: {type(law).kind}")
+        if material.heating is not None:
+            present |= {f"heating: {part}" for part in ("elastic", "dissipation") if getattr(material.heating, part) is not None}
+    present |= {"exchange: convection"} if any(s.convection is not None for s in experiment.surfaces) else set()
+    present |= {"gravity"} if experiment.gravity is not None else set()
+    said = {text.split(":")[0] for text in present}
+    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "gravity")
+    return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
+
+
+def output_bytes(experiment, particles: int) -> int:
+    """Bytes of a point's file: series in float64, snapshots in float32 (grid) and float64 (particles), before compression."""
+    samples = math.ceil(experiment.time.end / experiment.output.every) + 1
+    size = 20_000 + samples * 8 * (25 + len(experiment.output.probes))
+    snapshots = experiment.output.snapshots
+    if snapshots is not None:
+        frames = math.ceil(experiment.time.end / snapshots.every) + 1
+        nodes = math.prod(round(s / experiment.grid.cell) + 1 for s in experiment.grid.size)
+        size += frames * (4 * nodes * len(snapshots.grid) + 8 * particles * len(snapshots.particles) * 2)
+    return size
