@@ -5,7 +5,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 
 from dataclasses import dataclass
 
-COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET = range(10)
+COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER = range(11)
 
 KINDS = {
     COMPLETED: ("completed", "", ""),
@@ -17,6 +17,7 @@ KINDS = {
     STEP_UNDERFLOW: ("step_underflow", "the stable step fell below 1/256 of the first", "the scene stiffens or speeds up without bound: look at velocity.max and J.max"),
     ENERGY_GROWTH: ("energy_growth", "energy grows without a source", "lower `time.safety`"),
     MAX_PRINCIPLE: ("max_principle", "a temperature left the bounds of its data", "lower `time.safety` or `method.heat_step`"),
+    HEAT_SOLVER: ("heat_solver", "an implicit heat step did not converge", "lower `method.heat_step`, or raise `method.heat.implicit.tolerance`"),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

@@ -14,16 +14,29 @@ import numpy as np
 from mpm.boundary import directions, extents
 from mpm.diagnostics import finite
 from mpm.integrate.explicit import advance
+from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
+from mpm.integrate.heat_implicit import heat_implicit
+from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.timestep import Limits, limits
 from mpm.observe import Recorder
-from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, Outcome, outcome
+from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.transfer import wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
+MANY = 8  # explicit heat sub-steps that cost about as much as an implicit step
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
+
+@dataclass(frozen=True)
+class HeatMethod:
+    """`kind` auto, explicit or implicit; auto is implicit where a heat step would need more than MANY explicit sub-steps. order 1 or 2 of implicit steps."""
+
+    kind: str = "auto"
+    order: int = 1
+    tolerance: float = 1e-9
+
 
 @dataclass
 class Scene:
@@ -42,6 +55,8 @@ class Scene:
     step: float | None  # None: automatic
     safety: float
     heat_step: float | None
+    surroundings: tuple = ()  # mpm.heat.surroundings.Surroundings or None, by body
+    heat: HeatMethod = HeatMethod()
     watch: Any = None  # what to record: mpm.observe.Watch
     facts: dict = field(default_factory=dict)
 
@@ -50,6 +65,7 @@ class Clock:
 
     def __init__(self, scene: Scene):
         self.time, self.steps, self.heat_steps = 0.0, 0, 0
+        self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
         self.exchanged = self.gross = self.local = self.dissipated = 0.0
         self.first_step: float | None = None
@@ -86,13 +102,14 @@ def simulate(scene: Scene, beat=None) -> Run:
     return recorder.run(scene, clock, result, time.perf_counter() - began)
 
 def work_arrays(scene: Scene):
-    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, four scalars where there is heat."""
+    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, scalars where there is heat."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
     dtype = scene.bodies[0].particles.x.dtype
     nodes = np.zeros((2, n, D + 1), dtype)
     force = np.zeros((2, n if wants_change(scene.scheme) else 0, D + 1), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
-    return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((4, n if warm else 0))
+    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else IMPLICIT_ROWS
+    return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
 
 def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) -> Outcome:
     """Advance to the output time `end`."""
@@ -101,7 +118,9 @@ def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) ->
     heat_steps = max(1, math.ceil((end - start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
     for k in range(heat_steps):
         until = start + (end - start) * (k + 1) / heat_steps
-        warm_bodies(scene, clock, buffers, until - clock.time, now)
+        result = warm_bodies(scene, clock, buffers, until - clock.time, now)
+        if not result.ok:
+            return result
         recorder.watch(scene, until)
         result = march(scene, clock, buffers, until, beat)
         if not result.ok:
@@ -109,19 +128,36 @@ def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) ->
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     return outcome(COMPLETED)
 
-def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> None:
-    """One heat step of every body that has heat, in as many sub-steps as the limits ask for."""
+def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
+    """One heat step of every body that has heat: explicit in as many sub-steps as the limits ask for, or implicit."""
     if not now.heat:
-        return
+        return outcome(COMPLETED)
+    around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=False) if one is not None]
+    for body, one in around:
+        one.write(scene.space, body, clock.time, dt)
+    if not all(one.steady for _, one in around):
+        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
+    implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
     for body in scene.bodies:
-        gained = heat_step(scene.space, body, buffers[3], scene.walls, dt, substeps, scene.blend, scene.affine)
+        if implicit:
+            order, tolerance = scene.heat.order, scene.heat.tolerance
+            gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, order, tolerance, scene.blend, scene.affine)
+            if iterations < 0:
+                return outcome(HEAT_SOLVER, time=clock.time, step=clock.steps)
+            clock.iterations += iterations
+        else:
+            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
         clock.exchanged += gained
         clock.gross += abs(gained)
     clock.heat_steps += 1
-    if substeps > 1:
+    if implicit:
+        clock.implicit += 1
+    elif substeps > 1:
         binding = min(now.heat, key=now.heat.get)
         clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
+    return outcome(COMPLETED)
+
 
 def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""

@@ -85,14 +85,32 @@ class Thermal(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11)."""
+    """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11).
+
+    What surrounds them (the last five) holds for one heat step: heat/surroundings.py writes it where it changes in time or place.
+    """
 
     F: np.ndarray  # (N, D, D) total deformation gradient of the particles in the grid's directions: carries areas and offsets (Nanson)
     owner: np.ndarray  # (S,) particle
     area: np.ndarray  # (S, D) reference area times outward normal
     offset: np.ndarray  # (S, D) reference offset from particle to the piece's centroid [m]
     beta: np.ndarray  # (S,) [W/(m2 K)]
-    outside: np.ndarray  # (S,) ambient temperature less zero [K]
+    outside: np.ndarray  # (S,) ambient temperature less zero at the start of the heat step [K]
+    drift: np.ndarray  # (S,) its change over the heat step [K]
+    flux: np.ndarray  # (S,) heat into the body [W/m2]
+    radiation: Any  # Radiation or NoRadiation
+
+
+class Radiation(NamedTuple):
+    """Grey exchange with surroundings that enclose the body: sigma emissivity (Theta^4 - sky^4)."""
+
+    emissivity: np.ndarray  # (S,) [-]
+    sky: np.ndarray  # (S,) temperature of the surroundings at the start of the heat step [K]
+    drift: np.ndarray  # (S,) its change over the heat step [K]
+
+
+class NoRadiation(NamedTuple):
+    """Nothing radiates."""
 
 
 class Isothermal(NamedTuple):

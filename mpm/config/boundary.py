@@ -5,21 +5,41 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
-from mpm.config.quantities import Exchange, Temperature
+from mpm.config.programmes import Programme
+from mpm.config.quantities import Emissivity, Exchange, HeatFlux
 
 Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral"], Choice()]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
               3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
 SURFACE_SIDES = {0: ("all",), 1: ("all", "left", "right"), 2: ("all", "left", "right", "bottom", "top"), "axisymmetric": ("all", "lateral", "bottom", "top"),
                  3: ("all", "left", "right", "front", "back", "bottom", "top", "lateral")}  # fmt: skip
-EXCHANGES = ("convection",)
+EXCHANGES = ("convection", "flux", "fixed", "radiation")
 
 
 class Convection(Model):
     """Robin exchange: outward flux beta (T - outside)."""
 
     beta: Exchange = doc(description="heat-transfer coefficient; .inf fixes the temperature of the surface")
-    outside: Temperature = doc(description="temperature of the surroundings")
+    outside: Programme = doc(description="temperature of the surroundings; may change over time")
+
+
+class Flux(Model):
+    """A given flux of heat."""
+
+    q: HeatFlux = doc(description="heat into the body, by area; negative cools")
+
+
+class Fixed(Model):
+    """A given temperature of the surface: convection with infinite beta."""
+
+    temperature: Programme = doc(description="temperature of the surface; may change over time")
+
+
+class Radiation(Model):
+    """Grey radiation: outward flux sigma emissivity (T^4 - surroundings^4)."""
+
+    emissivity: Emissivity = doc(description="emissivity, from 0 to 1")
+    surroundings: Programme = doc(description="temperature of what surrounds the body; may change over time")
 
 
 class Surface(Model):
@@ -29,6 +49,9 @@ class Surface(Model):
     side: Side = doc("all", description="which part, by the outward normal at the start")
     name: str | None = doc(None, description="names the surface in paths: surfaces.<name>.convection.beta", pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")
     convection: Convection | None = doc(None, description="convection to the surroundings")
+    flux: Flux | None = doc(None, description="a given flux of heat")
+    fixed: Fixed | None = doc(None, description="a given temperature")
+    radiation: Radiation | None = doc(None, description="radiation to the surroundings")
 
     @model_validator(mode="after")
     def exchanges(self) -> "Surface":
@@ -38,19 +61,32 @@ class Surface(Model):
         return self
 
 
-class Slip(Kind):
+class WallHeat(Model):
+    """A hot wall (a pan): what touches it exchanges with it, and with nothing else."""
+
+    beta: Exchange = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at the wall's temperature")
+    temperature: Programme = doc(description="temperature of the wall; may change over time")
+
+
+class Face(Kind):
+    """A wall of any kind."""
+
+    heat: WallHeat | None = doc(None, description="heat that the wall exchanges with what touches it")
+
+
+class Slip(Face):
     """No motion through the wall, free motion along it."""
 
     kind: ClassVar[str] = "slip"
 
 
-class Stick(Kind):
+class Stick(Face):
     """No motion at the wall."""
 
     kind: ClassVar[str] = "stick"
 
 
-class Contact(Kind):
+class Contact(Face):
     """Slip that lets go: no motion into the wall, free motion away from it."""
 
     kind: ClassVar[str] = "contact"

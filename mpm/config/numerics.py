@@ -71,6 +71,27 @@ class Explicit(Kind):
     kind: ClassVar[str] = "explicit"
 
 
+class ImplicitHeat(Kind):
+    """L-stable implicit steps by conjugate gradients: any step, any beta."""
+
+    kind: ClassVar[str] = "implicit"
+    order: Annotated[Literal[1, 2], Choice()] = doc(1, description="order in time")
+    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1e-2)] = doc(1e-9, description="residual of the solver, of the step's change")
+
+
+class ExplicitHeat(Kind):
+    """Explicit steps, in as many sub-steps as stability asks for."""
+
+    kind: ClassVar[str] = "explicit"
+
+
+class AutoMoving(Kind):
+    """Explicit; implicit where a step would need many explicit sub-steps."""
+
+    kind: ClassVar[str] = "auto"
+
+
+HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic)
 RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
 Transfer = one_of("transfer", *TRANSFERS)
@@ -84,6 +105,7 @@ class Method(Model):
     gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
     precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
+    heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")
     heat_step: TimeOrAuto = doc("auto", description="time step of heat in moving bodies")
     offset: tuple[Offset, ...] = doc((), description="shift of bodies and probes against the grid lines, in cells, one a direction; zero unless given")
     rigid: one_of("integrator", *RIGID) = doc(AutoHeat(), description="heat in rigid bodies")

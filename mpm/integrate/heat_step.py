@@ -1,7 +1,7 @@
 """One explicit heat step (physics.md 3, 10, 11).
 
 C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
-C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~ = w + grad(w) (x_s - x_p)
+C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~: integrate/pieces.py
 h_p += alpha [ sum w d(theta_i) + blend (sum w theta_i - theta_p) ],   theta_p = theta(h_p),   c_p = affine sum w theta_i+ d/(sum w d^2)
 
 Both w and w~ sum to one over the nodes, and grad(w) to nothing, so the heat of the particles changes by exactly what the surface exchanged,
@@ -16,16 +16,18 @@ from mpm.basis import stencil
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, unfold
 from mpm.heat.local import rise
-from mpm.heat.surface import area_and_offset
+from mpm.integrate.pieces import exchange, place
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
-from mpm.state import Isothermal, NoExchange, Surface, Thermal
+from mpm.state import Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
+
+ROWS = 4  # scratch fields
 
 
 @kernel
 def heat_step(space, body, nodes, walls, dt, substeps, blend, affine):
-    """Advance one body's temperatures by dt in `substeps` grid steps; nodes: (4, n) scratch, zero before and after. Returns the heat gained [J]."""
+    """Advance one body's temperatures by dt in `substeps` grid steps; nodes: (ROWS, n) scratch, zero before and after. Returns the heat gained [J]."""
     return advance_heat(body.thermal, space, body, nodes, walls, dt, substeps, blend, affine)
 
 
@@ -44,12 +46,7 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
 def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     shape = extents(space)
     x, m = body.particles.x, body.particles.m
-    box = np.empty((3, 2), np.int64)
-    empty(shape, box)
-    for i in range(x.shape[0]):
-        for a in range(x.shape[1]):
-            i0, w, _, _, _ = stencil(space.basis, x[i, a] / space.h)
-            box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + len(w))
+    box = reach(space, x)
     capacity, theta, start, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     D = directions(space)
     work = np.zeros((2 + 3 * D, CHUNK))
@@ -60,10 +57,10 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     over_nodes(theta, capacity, start, shape, box, True)
     unfold(theta.reshape(-1, 1), 0, shape, box, walls)
     unfold(start.reshape(-1, 1), 0, shape, box, walls)
-    gained = 0.0
-    for _ in range(substeps):
+    gained, pieces = 0.0, place(body.surface, space, body)
+    for k in range(substeps):
         conduct(space, body, thermal, theta, rate, dt / substeps, work)
-        gained += exchange(body.surface, space, body, thermal, theta, rate, dt / substeps, work)
+        gained += exchange(body, space, pieces, thermal, theta, rate, dt / substeps, (k + 0.5) / substeps, work)
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
         over_nodes(rate, capacity, theta, shape, box, False)
         unfold(theta.reshape(-1, 1), 0, shape, box, walls)
@@ -72,6 +69,18 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
         used = box.copy()
         clear(nodes[field].reshape(-1, 1), shape, used)
     return gained
+
+
+@kernel
+def reach(space, x):
+    """The box (3, 2) of nodes that the particles touch."""
+    box = np.empty((3, 2), np.int64)
+    empty(extents(space), box)
+    for i in range(x.shape[0]):
+        for a in range(x.shape[1]):
+            i0, w, _, _, _ = stencil(space.basis, x[i, a] / space.h)
+            box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + len(w))
+    return box
 
 
 @kernel
@@ -124,40 +133,6 @@ def conduct(space, body, thermal, theta, rate, dt, work):
                 grad[k, p] *= flow
                 zero[k, p] = 0.0
         scatter_scalar(space, particles.x, first, count, at, zero, grad, rate)
-
-
-@role
-def exchange(surface, space, body, thermal, theta, rate, dt, work):
-    """rate_i -= dt sum S beta (theta_s - theta_out) w~; returns the heat gained [J]."""
-    raise TypeError(f"no exchange for {type(surface).__name__}")
-
-
-@exchange.register(NoExchange)
-def _(surface, space, body, thermal, theta, rate, dt, work):
-    return 0.0
-
-
-@exchange.register(Surface)
-def _(surface, space, body, thermal, theta, rate, dt, work):
-    D = directions(space)
-    x = body.particles.x
-    at, slope, grad, offset = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D], work[2 + 2 * D : 2 + 3 * D]
-    gained = 0.0
-    for s in range(surface.owner.shape[0]):
-        i = surface.owner[s]
-        area = area_and_offset(space, surface.F, body.particles.J, i, surface.area, surface.offset, s, offset)
-        gather_scalar(space, x, i, 1, theta, at, slope, grad)
-        there = at[0]
-        for k in range(D):
-            there += grad[k, 0] * offset[k, 0]
-            slope[k, 0] = 0.0
-        load = -dt * area * surface.beta[s] * (there - surface.outside[s])
-        at[0] = load
-        for k in range(D):
-            grad[k, 0] = load * offset[k, 0]
-        scatter_scalar(space, x, i, 1, at, slope, grad, rate)
-        gained += load
-    return gained
 
 
 @kernel

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.integrate.respond import RATE, SPEED, STRAIN, SWELL
 from mpm.materials import Constant, moduli, value
-from mpm.state import Expansion, Heating, Thermal
+from mpm.state import Expansion, Heating, NoExchange, Radiation, Thermal
 
 WAVE, CONDUCTION, EXCHANGE, PACE = 0.5, 0.4, 2.0, 0.15
 
@@ -64,10 +65,21 @@ def limits(space, D, bodies, reports) -> Limits:
             if kappa > 0:
                 keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
                 pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
-            beta = getattr(body.surface, "beta", np.zeros(0))
-            if beta.size and beta.max() > 0:
-                keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * float(beta.max()) * max(J, 1.0)))
+            beta = strongest(body.surface, body.thermal)
+            if beta > 0:
+                keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * beta * max(J, 1.0)))
     return Limits(mechanical, heat, pace)
+
+
+def strongest(surface, thermal) -> float:
+    """Largest beta of the pieces, radiation's slope 4 sigma e T^3 at the hottest place included [W/(m2 K)]."""
+    if isinstance(surface, NoExchange):
+        return 0.0
+    beta = surface.beta
+    if isinstance(surface.radiation, Radiation):
+        hottest = np.maximum(surface.radiation.sky + np.maximum(surface.radiation.drift, 0.0), thermal.zero + float(np.max(thermal.theta)))
+        beta = beta + 4 * STEFAN_BOLTZMANN * surface.radiation.emissivity * hottest**3
+    return float(beta.max())
 
 
 def coupling(body, lam, mu, R0) -> float:

@@ -12,8 +12,10 @@ from mpm.basis import BASES
 from mpm.boundary import KINDS
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
 from mpm.observe import Watch
-from mpm.scene.shapes import cells, on_side, shape
-from mpm.simulation import Scene
+from mpm.scene.exchange import exchanging_surface
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import cells, shape
+from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
     PAD,
     Axisymmetric,
@@ -27,7 +29,6 @@ from mpm.state import (
     NoHeating,
     Particles,
     Plane,
-    Surface,
     Thermal,
     Volume,
 )  # fmt: skip
@@ -36,10 +37,6 @@ from mpm.transfer import Apic, Bspline, Flip, Mls
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
          3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
 STRAINS = {1: 3, 2: 4, 3: 6}
-
-
-class SceneError(ValueError):
-    """A valid config that no method here can run; the message says what to change."""
 
 
 def law(model):
@@ -108,8 +105,8 @@ def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
     return expansion.gamma if kind == "modulus" else expansion.c * elastic.lam
 
 
-def moving_body(experiment, name: str, zero: float) -> Body:
-    """Particles and laws of one body."""
+def moving_body(experiment, name: str, zero: float):
+    """(Body, its Surroundings or None): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
     cut = sample(experiment, config)
@@ -131,17 +128,17 @@ def moving_body(experiment, name: str, zero: float) -> Body:
     if material.flow is not None:
         ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
         flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
-    thermal, surface, expansion, heating = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating()
+    thermal, surface, expansion, heating, surroundings = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
-        surface = exchanging_surface(experiment, name, cut, zero, dtype)
+        surface, surroundings = exchanging_surface(experiment, name, cut, zero, SIDES[experiment.grid.dimension], thermal)
     if material.expansion is not None:
         expansion = Expansion(stress_temperature_modulus(material.expansion, elastic), zero - material.expansion.reference)
     if material.heating is not None:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
-    return Body(particles, thermal, surface, elastic, flow, expansion, heating)
+    return Body(particles, thermal, surface, elastic, flow, expansion, heating), surroundings
 
 
 def spin_tensor(omega, D: int) -> np.ndarray:
@@ -150,27 +147,6 @@ def spin_tensor(omega, D: int) -> np.ndarray:
         return np.array([[0.0, -omega], [omega, 0.0]])
     a, b, c = omega
     return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
-
-
-def exchanging_surface(experiment, name: str, cut, zero: float, dtype):
-    """The pieces of a body's surface that the config gives an exchange; where several entries meet a piece, both act."""
-    owner, area, offset, beta, outside = [], [], [], [], []
-    for entry in experiment.surfaces:
-        if entry.of != name or entry.convection is None or entry.convection.beta == 0:
-            continue
-        if math.isinf(entry.convection.beta):
-            raise SceneError("beta = inf needs implicit heat, which bodies that move do not have yet: use a rigid body (no `elastic`), or a finite beta")
-        chosen = np.flatnonzero(on_side(cut.normal, entry.side))
-        owner.append(cut.owner[chosen])
-        area.append(cut.area[chosen, None] * cut.normal[chosen])
-        offset.append(cut.point[chosen] - cut.centroid[cut.owner[chosen]])
-        beta.append(np.full(len(chosen), entry.convection.beta))
-        outside.append(np.full(len(chosen), entry.convection.outside - zero))
-    if not owner or not sum(map(len, owner)):
-        return NoExchange()
-    D = cut.centroid.shape[1]
-    F = np.tile(np.eye(D, dtype=dtype), (len(cut.volume), 1, 1))
-    return Surface(F, np.concatenate(owner), np.concatenate(area), np.concatenate(offset), np.concatenate(beta), np.concatenate(outside))
 
 
 def schemes(experiment):
@@ -206,12 +182,18 @@ def build(experiment, exact=None) -> Scene:
     scheme, blend, affine = schemes(experiment)
     D = experiment.grid.directions
     times = output_times(experiment)
+    bodies, surroundings = zip(*(moving_body(experiment, name, zero) for name in names), strict=True)
+    for body, around in zip(bodies, surroundings, strict=True):
+        if around is not None:
+            around.write(space, body, 0.0, 0.0)
+    heat = experiment.method.heat
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),
         scheme=scheme,
         names=names,
-        bodies=tuple(moving_body(experiment, name, zero) for name in names),
+        bodies=bodies,
+        surroundings=surroundings,
         walls=wall_kinds(experiment),
         gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * D),
         blend=blend,
@@ -220,6 +202,7 @@ def build(experiment, exact=None) -> Scene:
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
+        heat=HeatMethod(type(heat).kind, getattr(heat, "order", 1), getattr(heat, "tolerance", 1e-9)),
         watch=watch(experiment, times, exact),
     )
 

@@ -5,6 +5,7 @@ import time
 import numpy as np
 
 from mpm.scene.build import SceneError, law, output_times, watch
+from mpm.scene.exchange import robin
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 
@@ -14,12 +15,15 @@ def rigid_bodies(experiment) -> list:
     from mpm.rigid import RigidBody
     if experiment.grid.basis != "quadratic":
         raise SceneError(f"grid.basis {experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out")
+    for entry in experiment.surfaces:
+        if entry.flux is not None or entry.radiation is not None or not all(isinstance(outside, float) for _, outside in robin(entry)):
+            raise SceneError(f"rigid bodies know no flux, radiation or temperature over time yet: give {entry.of} an `elastic` law")
     bodies = []
     for name, body in experiment.bodies.items():
         material = experiment.materials[body.material]
         if material.heat is None:
             raise SceneError(f"materials.{body.material} has neither `elastic` nor `heat`: nothing would happen in {name}")
-        surfaces = tuple((s.side, s.convection.beta, s.convection.outside) for s in experiment.surfaces if s.of == name and s.convection is not None)
+        surfaces = tuple((s.side, beta, outside) for s in experiment.surfaces if s.of == name for beta, outside in robin(s))
         outline = shape(body.shape, experiment.grid.dimension)
         bodies.append(RigidBody(outline, body.temperature, material.density, law(material.heat.kappa), law(material.heat.alpha), surfaces))
     return bodies

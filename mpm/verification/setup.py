@@ -22,11 +22,17 @@ def constants(experiment, body) -> tuple[float, float]:
 
 
 def one_exchange(experiment, name: str) -> tuple[float, float]:
-    """beta and the temperature outside; one convection must act on the whole surface."""
+    """beta and the temperature outside; one convection or fixed temperature, constant in time, must act on the whole surface."""
     entries = [surface for surface in experiment.surfaces if surface.of == name]
     if len(entries) != 1 or entries[0].side not in ("all", "lateral"):
         raise ValueError(f"the exact solution needs one surface entry of {name} with side all or lateral")
-    return entries[0].convection.beta, entries[0].convection.outside
+    entry = entries[0]
+    if entry.flux is not None or entry.radiation is not None or (entry.convection is None) == (entry.fixed is None):
+        raise ValueError("the exact solution needs convection or a fixed temperature, and nothing else")
+    beta, out = (entry.convection.beta, entry.convection.outside) if entry.fixed is None else (math.inf, entry.fixed.temperature)
+    if not isinstance(out, float):
+        raise ValueError("the exact solution needs a temperature outside that does not change over time")
+    return beta, out
 
 
 def moved(experiment, point) -> np.ndarray:

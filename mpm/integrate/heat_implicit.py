@@ -1,0 +1,269 @@
+"""One implicit heat step of a moving body: conduction and surface together, by matrix-free conjugate gradients (physics.md 3, 11).
+
+    C (theta_k - base_k) = gamma dt f(theta_k),   f = sum V q grad(w) + sum S [q - beta (theta_s - outside)] w~,   theta+ = theta + dt sum b_k f(theta_k)/C
+    order 1   backward Euler: gamma = 1                    order 2   Alexander's two stages: gamma = 1 - 1/sqrt(2); both L-stable
+
+C, kappa and radiation's secants are those of the step's start. The step ends with the fluxes at the stage temperatures:
+the heat of the particles changes by exactly what the pieces exchanged, however loose the tolerance; an iterate's residual r only moves heat between nodes, by r/C.
+Mirror walls fold in the operator: ghost nodes are no unknowns. Preconditioned by the diagonal of C + gamma dt A.
+Good values  tolerance 1e-9.   Fails when: iterations pass MOST (returned, not hidden).
+"""
+
+import numpy as np
+
+from mpm.boundary import CONTACT, directions, extents
+from mpm.boundary.walls import clear, fold, unfold
+from mpm.heat.exchange import meet
+from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
+from mpm.integrate.pieces import load_piece, place, temperature_at
+from mpm.jit import kernel, role
+from mpm.materials.laws import value
+from mpm.state import PAD, Isothermal, Thermal
+from mpm.transfer import CHUNK, gather_scalar, scatter_scalar, scatter_square
+
+MOST = 5000
+GAMMA = 1.0 - 0.5**0.5
+ROWS = 10  # scratch fields
+
+
+@kernel
+def heat_implicit(space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    """Advance one body's temperatures by dt; nodes: (ROWS, n) scratch, zero before and after. Returns (heat gained [J], iterations or -1)."""
+    return advance_implicit(body.thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
+
+
+@role
+def advance_implicit(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    """See heat_implicit."""
+    raise TypeError(f"no heat for {type(thermal).__name__}")
+
+
+@advance_implicit.register(Isothermal)
+def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    return 0.0, 0
+
+
+@advance_implicit.register(Thermal)
+def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    shape = extents(space)
+    x = body.particles.x
+    box = reach(space, x)
+    capacity, theta, base, total = nodes[0], nodes[1], nodes[2], nodes[3]
+    stage, rate, solver = nodes[4], nodes[5], nodes[6:]
+    work = np.zeros((2 + 3 * directions(space), CHUNK))
+    scatter_heat(space, x, body.particles.m, thermal, capacity, theta, work)
+    folded = box.copy()
+    fold(capacity.reshape(-1, 1), 0, shape, folded, walls)
+    fold(theta.reshape(-1, 1), 0, shape, box, walls)
+    over_nodes(theta, capacity, base, shape, box, True)
+    unfold(theta.reshape(-1, 1), 0, shape, box, walls)
+    drop_ghosts(capacity, shape, box, walls)
+    flow = conductances(space, body, thermal, theta, work)
+    pieces = place(body.surface, space, body)
+    met = np.empty((3, pieces[0].shape[0]))  # beta, outside, q of every piece
+    gained, iterations, stages = 0.0, 0, order
+    gamma = 1.0 if order == 1 else GAMMA
+    for k in range(stages):
+        part = 1.0 if k == stages - 1 else gamma
+        for s in range(met.shape[1]):
+            there = temperature_at(space, x, pieces[0], pieces[2], s, theta, work)
+            met[0, s], met[1, s], met[2, s] = meet(body.surface, s, there, thermal.zero, part)
+        if k == 1:  # base = theta + (1 - gamma) dt f_1/C
+            combine(base, theta, total, capacity, 1.0, shape, box)
+        count = solve(space, x, flow, pieces, met, capacity, base, gamma * dt, tolerance, walls, box, stage, rate, solver, work)
+        if count < 0:
+            break
+        iterations += count
+        weight = dt * (gamma if k == stages - 1 else 1.0 - gamma)
+        unfold(stage.reshape(-1, 1), 0, shape, box, walls)
+        gained += load(space, x, flow, pieces, met, stage, rate, weight, 1.0, work)
+        fold(rate.reshape(-1, 1), 0, shape, box, walls)
+        take(total, rate, shape, box)
+    ok = count >= 0
+    if ok:
+        combine(stage, theta, total, capacity, 1.0, shape, box)
+        unfold(stage.reshape(-1, 1), 0, shape, box, walls)
+        gather_heat(space, x, thermal, theta, stage, blend, affine, work)
+    for field in range(nodes.shape[0]):
+        used = box.copy()
+        clear(nodes[field].reshape(-1, 1), shape, used)
+    return (gained, iterations) if ok else (0.0, -1)
+
+
+@kernel
+def drop_ghosts(capacity, shape, box, walls):
+    """No capacity on the ghost planes of mirror walls: what has none is no unknown."""
+    stride = (shape[1] * shape[2], shape[2], 1)
+    for axis in range(3):
+        if shape[axis] == 1:
+            continue
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        for side in range(2):
+            first, last = (0, PAD) if side == 0 else (shape[axis] - PAD, shape[axis])
+            if walls[axis, side] == CONTACT:
+                continue
+            for ghost in range(max(first, box[axis, 0]), min(last, box[axis, 1])):
+                for i in range(box[a, 0], box[a, 1]):
+                    for j in range(box[b, 0], box[b, 1]):
+                        capacity[i * stride[a] + j * stride[b] + ghost * stride[axis]] = 0.0
+
+
+@kernel
+def conductances(space, body, thermal, theta, work):
+    """V kappa of every particle at nodal temperatures `theta`."""
+    D = directions(space)
+    p = body.particles
+    out = np.empty(p.x.shape[0])
+    at, slope, grad = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D]
+    for first in range(0, len(out), CHUNK):
+        count = min(CHUNK, len(out) - first)
+        gather_scalar(space, p.x, first, count, theta, at, slope, grad)
+        for i in range(count):
+            out[first + i] = p.J[first + i] * p.V0[first + i] * value(thermal.kappa, thermal.zero + at[i])
+    return out
+
+
+@kernel
+def load(space, x, flow, pieces, met, theta, rate, dt, sources, work):
+    """rate += dt f(theta); `sources` 0 leaves outside and q away: the linear operator -dt A. Returns the heat gained [J]."""
+    D = directions(space)
+    at, slope, grad, zero = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D], work[2 + 2 * D : 2 + 3 * D]
+    zero[:] = 0.0
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        gather_scalar(space, x, first, count, theta, at, slope, grad)
+        for p in range(count):
+            at[p] = 0.0
+            for k in range(D):
+                grad[k, p] *= -dt * flow[first + p]
+        scatter_scalar(space, x, first, count, at, zero, grad, rate)
+    owner, area, offset = pieces
+    gained = 0.0
+    for s in range(owner.shape[0]):
+        there = temperature_at(space, x, owner, offset, s, theta, work)
+        push = dt * area[s] * (sources * met[2, s] - met[0, s] * (there - sources * met[1, s]))
+        load_piece(space, x, owner, offset, s, push, rate, work)
+        gained += push
+    return gained
+
+
+@kernel
+def diagonal(space, x, flow, pieces, met, capacity, dt, out, work):
+    """out = diag(C + dt A), ghost contributions left where they are."""
+    D = directions(space)
+    scale, one, G = work[0], work[1], work[2 : 2 + D]
+    for k in range(D):
+        one[:] = 0.0
+        G[:] = 0.0
+        G[k] = 1.0
+        for first in range(0, x.shape[0], CHUNK):
+            count = min(CHUNK, x.shape[0] - first)
+            for p in range(count):
+                scale[p] = dt * flow[first + p]
+            scatter_square(space, x, first, count, scale, one, G, out)
+    owner, area, offset = pieces
+    one[0] = 1.0
+    for s in range(owner.shape[0]):
+        scale[0] = dt * area[s] * met[0, s]
+        for k in range(D):
+            G[k, 0] = offset[k, s]
+        scatter_square(space, x, owner[s], 1, scale, one, G, out)
+
+
+@kernel
+def solve(space, x, flow, pieces, met, capacity, base, dt, tolerance, walls, box, theta, rate, solver, work):
+    """theta with C (theta - base) = dt f(theta) on the nodes with capacity, by conjugate gradients from `base`; iterations, or -1.
+
+    Ends when the residual, as temperature (norm weighted with C), is below `tolerance` of the change. rate comes and goes as zero.
+    """
+    shape = extents(space)
+    r, p, inverse, change = solver[0], solver[1], solver[2], solver[3]
+    each = inside(capacity, shape, box)
+    inverse[:] = 0.0
+    diagonal(space, x, flow, pieces, met, capacity, dt, inverse, work)
+    fold(inverse.reshape(-1, 1), 0, shape, box.copy(), walls)
+    ghosts = base.reshape(-1, 1)
+    unfold(ghosts, 0, shape, box, walls)
+    load(space, x, flow, pieces, met, base, rate, dt, 1.0, work)
+    fold(rate.reshape(-1, 1), 0, shape, box, walls)
+    rho = 0.0
+    for n in each:
+        inverse[n] = 1.0 / (capacity[n] + inverse[n])
+        r[n] = rate[n]
+        p[n] = inverse[n] * r[n]
+        rho += r[n] * p[n]
+        change[n] = 0.0
+        theta[n] = base[n]
+    done = -1
+    for count in range(MOST):
+        size, moved = 0.0, 0.0
+        for n in each:
+            size += r[n] * r[n] / capacity[n]
+            moved += capacity[n] * change[n] * change[n]
+        if size <= tolerance * tolerance * moved or rho == 0.0:
+            done = count
+            break
+        wipe(rate, shape, box)
+        unfold(p.reshape(-1, 1), 0, shape, box, walls)
+        load(space, x, flow, pieces, met, p, rate, -dt, 0.0, work)
+        fold(rate.reshape(-1, 1), 0, shape, box, walls)
+        curve = 0.0
+        for n in each:
+            rate[n] += capacity[n] * p[n]
+            curve += p[n] * rate[n]
+        step, before = rho / curve, rho
+        rho = 0.0
+        for n in each:
+            change[n] += step * p[n]
+            r[n] -= step * rate[n]
+            rho += inverse[n] * r[n] * r[n]
+        for n in each:
+            p[n] = inverse[n] * r[n] + rho / before * p[n]
+    for n in each:
+        theta[n] = base[n] + change[n]
+    wipe(rate, shape, box)
+    wipe(p, shape, box)
+    return done
+
+
+@kernel
+def inside(capacity, shape, box):
+    """Indices of the nodes with capacity."""
+    found, count = np.empty(np.prod(box[:, 1] - box[:, 0]), np.int64), 0
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                if capacity[n] > 0.0:
+                    found[count] = n
+                    count += 1
+    return found[:count]
+
+
+@kernel
+def wipe(field, shape, box):
+    """Zero a field in the box."""
+    used = box.copy()
+    clear(field.reshape(-1, 1), shape, used)
+
+
+@kernel
+def take(total, rate, shape, box):
+    """total += rate, rate = 0."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                total[n] += rate[n]
+                rate[n] = 0.0
+
+
+@kernel
+def combine(out, theta, heat, capacity, factor, shape, box):
+    """out = theta + factor heat/C where there is capacity."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                if capacity[n] > 0.0:
+                    out[n] = theta[n] + factor * heat[n] / capacity[n]

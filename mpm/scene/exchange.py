@@ -1,0 +1,78 @@
+"""Surfaces of a config: which pieces of a moving body exchange heat, with what, and the run-time programmes of temperatures over time."""
+
+import numpy as np
+
+from mpm.heat.exchange import PENALTY
+from mpm.heat.programmes import Sine, bounds
+from mpm.heat.surroundings import Act, HotWall, Surroundings
+from mpm.materials import table, value
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import on_side
+from mpm.state import NoExchange, NoRadiation, Radiation, Surface
+
+
+def programme(model):
+    """The run-time programme of a config's: a number, a table over time or a sine."""
+    if isinstance(model, float | int):
+        return float(model)
+    if type(model).kind == "table":
+        return table(model.time, model.value, model.interpolation)
+    return Sine(model.mean, model.amplitude, model.period, model.phase)
+
+
+def robin(entry):
+    """[(beta, outside)] of a surface entry: convection, or a fixed temperature (beta = inf); a list, empty where it has neither."""
+    found = []
+    if entry.convection is not None:
+        found.append((entry.convection.beta, programme(entry.convection.outside)))
+    if entry.fixed is not None:
+        found.append((float("inf"), programme(entry.fixed.temperature)))
+    return found
+
+
+def acts_of(entry, pieces) -> list[Act]:
+    """What one surface entry does to `pieces`."""
+    acts = [Act(pieces, beta=beta, outside=outside) for beta, outside in robin(entry) if beta > 0]
+    if entry.flux is not None and entry.flux.q != 0:
+        acts.append(Act(pieces, flux=entry.flux.q))
+    if entry.radiation is not None and entry.radiation.emissivity > 0:
+        acts.append(Act(pieces, emissivity=entry.radiation.emissivity, sky=programme(entry.radiation.surroundings)))
+    return acts
+
+
+def hot_walls(experiment, sides) -> list[HotWall]:
+    """Walls that have `heat`; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
+    found = []
+    for number, side in enumerate(sides):
+        heat = getattr(experiment.walls.get(side), "heat", None)
+        if heat is not None and heat.beta > 0:
+            found.append(HotWall(number // 2, number % 2, heat.beta, programme(heat.temperature)))
+    return found
+
+
+def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
+    """(Surface, Surroundings) of a body: the pieces that an entry names, all of them where a wall is hot; (NoExchange, None) where nothing acts."""
+    acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side)))]
+    acts = [act for act in acts if len(act.pieces)]
+    walls = hot_walls(experiment, sides)
+    if not acts and not walls:
+        return NoExchange(), None
+    kept = np.arange(len(cut.owner)) if walls else np.unique(np.concatenate([act.pieces for act in acts]))
+    acts = [Act(np.searchsorted(kept, act.pieces), act.beta, act.outside, act.flux, act.emissivity, act.sky) for act in acts]
+    radiating = [act for act in acts if act.emissivity > 0]
+    if len(np.unique(np.concatenate([act.pieces for act in radiating] or [kept[:0]]))) < sum(len(act.pieces) for act in radiating):
+        raise SceneError(f"two surface entries of {name} radiate from the same place: merge them into one")
+    around = [act.outside for act in acts if act.beta > 0] + [wall.temperature for wall in walls]
+    seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
+    most = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
+    if most == 0 and any(act.beta > 0 for act in (*acts, *walls)):
+        raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
+    S, D = len(kept), cut.centroid.shape[1]
+    owner, dtype = cut.owner[kept], thermal.theta.dtype
+    F = np.tile(np.eye(D, dtype=dtype), (len(cut.volume), 1, 1))
+    radiation = Radiation(np.zeros(S), np.ones(S), np.zeros(S)) if radiating else NoRadiation()
+    surface = Surface(
+        F, owner, cut.area[kept, None] * cut.normal[kept], cut.point[kept] - cut.centroid[owner],
+        np.zeros(S), np.zeros(S), np.zeros(S), np.zeros(S), radiation,
+    )  # fmt: skip
+    return surface, Surroundings(acts, walls, zero, most)
