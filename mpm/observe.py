@@ -13,7 +13,7 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses
 from mpm.outcome import Outcome
-from mpm.state import PAD, Axisymmetric, Expansion, Run, Thermal
+from mpm.state import PAD, Axisymmetric, Expansion, Latched, Run, Thermal
 
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
@@ -157,6 +157,9 @@ def thermal_pressure(body) -> np.ndarray:
     """gamma (Theta - Theta_0) of every particle [Pa]."""
     if isinstance(body.expansion, Expansion):
         return body.expansion.gamma * (body.thermal.theta.astype(float) + body.expansion.shift)
+    if isinstance(body.expansion, Latched):
+        held = np.maximum(body.expansion.most, np.minimum(body.thermal.theta, body.expansion.set)).astype(float)
+        return body.expansion.gamma * (held + body.expansion.shift)
     return np.zeros(len(body.particles.m))
 
 

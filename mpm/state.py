@@ -134,6 +134,15 @@ class Expansion(NamedTuple):
     shift: float  # zero - reference [K]: theta + shift = Theta - Theta_0
 
 
+class Latched(NamedTuple):
+    """Thermal stress -gamma (min(highest Theta so far, set) - reference) 1: swells as it warms, and keeps that as it cools (physics.md 10)."""
+
+    gamma: float  # [Pa/K]
+    shift: float  # zero - reference [K]
+    most: np.ndarray  # (N,) highest temperature so far, at most `set`, less zero [K]
+    set: float  # temperature at which it sets, less zero [K]
+
+
 class NoHeating(NamedTuple):
     """Deformation does not heat."""
 

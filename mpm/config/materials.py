@@ -10,6 +10,7 @@ from mpm.config.quantities import Density, Fraction, Modulus, PerKelvin, Pressur
 
 PoissonRatio = Annotated[float, Quantity("", "Poisson ratio", above=-1, most=0.4999)]
 PAIRS = (("E", "nu"), ("lam", "mu"), ("K", "mu"))
+STRENGTHS = ("coefficient", "gamma", "c")
 
 
 class Hencky(Kind):
@@ -80,6 +81,25 @@ class SourceExpansion(Kind):
     reference: Temperature = doc(293.15, description="temperature without thermal stress")
 
 
+class LatchedExpansion(Kind):
+    """Thermal stress from the highest temperature so far, at most `set`: what has swollen stays as it cools. Exactly one of coefficient, gamma and c."""
+
+    kind: ClassVar[str] = "latched"
+    coefficient: PerKelvin | None = doc(None, description="linear thermal expansion coefficient: gamma = 3 K coefficient")
+    gamma: StressPerKelvin | None = doc(None, description="stress-temperature modulus gamma")
+    c: PerKelvin | None = doc(None, description="the supplement's coupling coefficient: gamma = c lam")
+    reference: Temperature = doc(293.15, description="temperature without thermal stress")
+    set: Temperature = doc(description="temperature at which the material sets: it swells no further above it")
+
+    @model_validator(mode="after")
+    def strength(self) -> "LatchedExpansion":
+        """One way to say how strongly."""
+        given = [key for key in STRENGTHS if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise problem("strength", f"exactly one strength is needed, found {' '.join(given) or 'none'}", list(STRENGTHS), at=tuple(given[1:2]))
+        return self
+
+
 class ElasticHeating(Model):
     """Heating and cooling by elastic change of volume, along the adiabat."""
 
@@ -100,7 +120,7 @@ class Heating(Model):
 ELASTIC: tuple[type[Kind], ...] = (Hencky,)
 FLOW: tuple[type[Kind], ...] = (Ellipse,)
 HEAT: tuple[type[Kind], ...] = (Fourier,)
-EXPANSION: tuple[type[Kind], ...] = (LinearExpansion, ModulusExpansion, SourceExpansion)
+EXPANSION: tuple[type[Kind], ...] = (LinearExpansion, ModulusExpansion, SourceExpansion, LatchedExpansion)
 
 
 class Material(Model):

@@ -98,6 +98,9 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
                 f"materials.{name}.{absent[0]}",
                 on_key=True,
             )
+    if item.heating is not None and item.heating.elastic is not None and item.expansion is not None and item.expansion.kind == "latched":
+        said = "latched expansion is not reversible, so it has no elastic heating"
+        yield Finding(("materials", name, "heating", "elastic"), said, "linear, modulus or source", on_key=True)
     if item.heating is not None:
         for part, section in (("elastic", "expansion"), ("dissipation", "flow")):
             if getattr(item.heating, part) is not None and getattr(item, section) is None:

@@ -1,6 +1,7 @@
 """What deformation and temperature do to each other at a particle: thermal stress, heating along the adiabat, heat of dissipation.
 
 thermal stress   gamma (Theta - Theta_0)                                                     physics.md 1
+latched          gamma (min(max over time of Theta, T_set) - Theta_0)                        physics.md 10
 heating          Theta <- Theta exp(-gamma/(R0 alpha) (tr eps_new - tr eps_old)) + chi_d D/(R0 alpha)   physics.md 4, step 7
 The exponential is the exact adiabat, so any step gives Theta = Theta_0 J^-Gamma.
 """
@@ -9,7 +10,7 @@ import math
 
 from mpm.jit import role
 from mpm.materials.laws import Constant, enthalpy, temperature_of, value
-from mpm.state import Expansion, Heating, Isothermal, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHeating, Thermal
 
 
 @role
@@ -53,6 +54,28 @@ def _(expansion, thermal, i):
 @thermal_stress.register(Expansion)
 def _(expansion, thermal, i):
     return expansion.gamma * (thermal.theta[i] + expansion.shift)
+
+
+@thermal_stress.register(Latched)
+def _(expansion, thermal, i):
+    return expansion.gamma * (max(expansion.most[i], min(thermal.theta[i], expansion.set)) + expansion.shift)
+
+
+@role
+def latch(expansion, thermal, i):
+    """Remember what particle i has reached, at the end of a step."""
+    raise TypeError(f"nothing to latch in {type(expansion).__name__}")
+
+
+@latch.register(NoExpansion)
+@latch.register(Expansion)
+def _(expansion, thermal, i):
+    return None
+
+
+@latch.register(Latched)
+def _(expansion, thermal, i):
+    expansion.most[i] = max(expansion.most[i], min(thermal.theta[i], expansion.set))
 
 
 @role

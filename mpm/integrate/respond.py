@@ -8,7 +8,7 @@ Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau 
 import math
 
 from mpm.basis import inverse_moment
-from mpm.heat.local import heat_locally, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
 from mpm.jit import kernel, role
 from mpm.materials import FLOW, NoFlow, flow, stress
 from mpm.outcome import INVERTED, OVERSTRETCHED, RETURN_MAP
@@ -60,6 +60,7 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
         gained = heat_locally(body.heating, body.thermal, i, density, e1 + e2 + e3 - trace_before, lost)
         report[HEATED] += body.particles.V0[i] * gained
         report[DISSIPATED] += body.particles.V0[i] * lost
+        latch(body.expansion, body.thermal, i)
         thermal = thermal_stress(body.expansion, body.thermal, i)
     report[STRAIN] = min(report[STRAIN], e1, e2, e3)
     t1, t2, t3 = stress(body.elastic, e1, e2, e3, thermal)

@@ -8,7 +8,7 @@ import numpy as np
 from mpm.jit import role
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, Table
 from mpm.point.state import Lumped, NoConduction, Rigid
-from mpm.state import Expansion, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, Thermal
 
 
 @role
@@ -78,6 +78,11 @@ def _(law, i):
 @pick.register(Expansion)
 def _(law, i):
     return Expansion(law.gamma[i], law.shift[i])
+
+
+@pick.register(Latched)
+def _(law, i):
+    return Latched(law.gamma[i], law.shift[i], law.most[i], law.set[i])
 
 
 @pick.register(Heating)

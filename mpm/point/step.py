@@ -7,7 +7,7 @@ stress to round-off. Slopes by differences, so that every law and coupling is se
 
 import math
 
-from mpm.heat.local import heat_locally, rise, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, rise, temperature, thermal_stress
 from mpm.jit import kernel, role
 from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, energy, enthalpy, flow, moduli, stress, value
 from mpm.point.state import STRESS, Lumped, Rigid
@@ -257,6 +257,7 @@ def step(matter, e, total, d, kind, target, base, held, dt, work):
         if not equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
             return 0.0, 0.0, False
     e1, e2, e3, _, _, _, lost, gained, ok = answer(matter, e, d, base, held, dt)
+    latch(matter.expansion, matter.thermal, 0)
     e[0], e[1], e[2] = e1, e2, e3
     for k in range(3):
         total[k] += d[k]

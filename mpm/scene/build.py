@@ -23,6 +23,7 @@ from mpm.state import (
     Expansion,
     Heating,
     Isothermal,
+    Latched,
     Line,
     NoExchange,
     NoExpansion,
@@ -99,10 +100,18 @@ def elastic_law(model) -> Hencky:
 
 def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
     """gamma [Pa/K] = 3 K alpha_L = c lam (physics.md 0)."""
-    kind = type(expansion).kind
-    if kind == "linear":
-        return 3 * (elastic.lam + 2 * elastic.mu / 3) * expansion.coefficient
-    return expansion.gamma if kind == "modulus" else expansion.c * elastic.lam
+    coefficient, gamma = getattr(expansion, "coefficient", None), getattr(expansion, "gamma", None)
+    if coefficient is not None:
+        return 3 * (elastic.lam + 2 * elastic.mu / 3) * coefficient
+    return gamma if gamma is not None else expansion.c * elastic.lam
+
+
+def expansion_law(model, elastic: Hencky, theta: np.ndarray, zero: float):
+    """The run-time expansion; `theta` (N,) are temperatures at the start, less `zero`."""
+    gamma, shift = stress_temperature_modulus(model, elastic), zero - model.reference
+    if type(model).kind != "latched":
+        return Expansion(gamma, shift)
+    return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)
 
 
 def moving_body(experiment, name: str, zero: float):
@@ -134,7 +143,7 @@ def moving_body(experiment, name: str, zero: float):
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
         surface, surroundings = exchanging_surface(experiment, name, cut, zero, SIDES[experiment.grid.dimension], thermal)
     if material.expansion is not None:
-        expansion = Expansion(stress_temperature_modulus(material.expansion, elastic), zero - material.expansion.reference)
+        expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
     if material.heating is not None:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)

@@ -9,9 +9,9 @@ from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
 from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
-from mpm.scene.build import SceneError, elastic_law, law, output_times, stress_temperature_modulus
+from mpm.scene.build import SceneError, elastic_law, expansion_law, law, output_times
 from mpm.scene.inventory import output_bytes, physics
-from mpm.state import Expansion, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
+from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
 
 AXES = ("xx", "yy", "zz")
 PRESCRIBED = (("strain_rate", RATE), ("stretch_rate", NOMINAL), ("stress", STRESS))
@@ -156,7 +156,7 @@ def laws(experiment) -> Matter:
         thermal = Thermal(np.zeros(1), np.zeros(1), body.temperature, NoConduction(), law(material.heat.alpha))
         exchange = lumped(experiment, name, body)
     if material.expansion is not None:
-        expansion = Expansion(stress_temperature_modulus(material.expansion, elastic), body.temperature - material.expansion.reference)
+        expansion = expansion_law(material.expansion, elastic, thermal.theta, body.temperature)
     if material.heating is not None:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)

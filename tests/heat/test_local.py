@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from mpm.heat.local import heat_locally, rise, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, rise, temperature, thermal_stress
 from mpm.materials import Bump, Constant, Hencky, Logistic, enthalpy, stress, table
-from mpm.state import Expansion, Heating, Isothermal, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHeating, Thermal
 
 R0 = 1.7
 
@@ -67,3 +67,16 @@ def test_stress_at_thermal_expansion(core):
         e = math.log(row["uniaxial_stretch"])
         assert stress(law, e, 0.0, 0.0, heat) == close((0, row["uniaxial_tau_lateral"], row["uniaxial_tau_lateral"]), abs=1e-10 * abs(heat))
         assert stress(law, 0.0, 0.0, 0.0, heat) == close((row["constrained_tau_iso"],) * 3, rel=1e-14)
+
+
+def test_latched_expansion_swells_sets_and_stays():
+    """gamma (min(max over time of Theta, set) - reference): up with the temperature, no further than `set`, never down."""
+    state = thermal(Constant(1.0), 300.0)
+    law = Latched(2.0, 250.0 - 290.0, np.array([50.0]), 330.0 - 250.0)
+    seen = []
+    for theta in (300.0, 310.0, 305.0, 340.0, 360.0, 280.0):
+        state.theta[0] = theta - 250.0
+        seen.append(thermal_stress(law, state, 0))
+        latch(law, state, 0)
+        assert thermal_stress(law, state, 0) == seen[-1]
+    assert seen == pytest.approx([20.0, 40.0, 40.0, 80.0, 80.0, 80.0], rel=1e-14)
