@@ -19,6 +19,7 @@ from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
+from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.timestep import Limits, limits
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, Outcome, outcome
@@ -59,6 +60,7 @@ class Scene:
     heat: HeatMethod = HeatMethod()
     watch: Any = None  # what to record: mpm.observe.Watch
     facts: dict = field(default_factory=dict)
+    sharp: int = 0  # XPIC order of the temperature transfer; 0: none
 
 class Clock:
     """Counts, limits and accumulated sources of one run."""
@@ -140,6 +142,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
     implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
     for body in scene.bodies:
+        lost = lost_to_grid(scene, body, buffers[3])
         if implicit:
             order, tolerance = scene.heat.order, scene.heat.tolerance
             gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, order, tolerance, scene.blend, scene.affine)
@@ -150,6 +153,8 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
             gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
         clock.exchanged += gained
         clock.gross += abs(gained)
+        if lost is not None:
+            correct(body.thermal, *lost)
     clock.heat_steps += 1
     if implicit:
         clock.implicit += 1
@@ -157,6 +162,13 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         binding = min(now.heat, key=now.heat.get)
         clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
     return outcome(COMPLETED)
+
+
+def lost_to_grid(scene: Scene, body, rows):
+    """What XPIC takes from the temperatures of a body in this heat step, and alpha at its start; None with other transfers."""
+    if not scene.sharp or not isinstance(body.thermal, Thermal):
+        return None
+    return specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)
 
 
 def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:

@@ -51,6 +51,20 @@ class Pic(Kind):
     kind: ClassVar[str] = "pic"
 
 
+class AffineFlip(Kind):
+    """Increments with APIC's slopes, and a small fraction of PIC: for steps so small that APIC's own damping shows."""
+
+    kind: ClassVar[str] = "affine_flip"
+    blend: Fraction = doc(0.02, description="fraction of PIC")
+
+
+class Xpic(Kind):
+    """FLIP cleaned of what the grid cannot see, by extra transfers."""
+
+    kind: ClassVar[str] = "xpic"
+    order: Annotated[int, Whole("order", 1, 16)] = doc(2, description="order; 1 is PIC, each further one costs a transfer to the grid and back")
+
+
 class AutoHeat(Kind):
     """Whichever of the integrators suits the laws."""
 
@@ -92,7 +106,7 @@ class AutoMoving(Kind):
 
 
 HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
-TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic)
+TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
 RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
 Transfer = one_of("transfer", *TRANSFERS)
 

@@ -9,6 +9,7 @@ The exponential is the exact adiabat, so any step gives Theta = Theta_0 J^-Gamma
 import math
 
 from mpm.jit import role
+from mpm.materials import LAWS
 from mpm.materials.laws import Constant, enthalpy, temperature_of, value
 from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHeating, Thermal
 
@@ -16,12 +17,21 @@ from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHe
 @role
 def rise(alpha, theta, heat):
     """Temperature rise [K] of one kilogram at `theta` [K] that takes up `heat` [J/kg]: through enthalpy, so no step jumps over latent heat."""
-    return temperature_of(alpha, enthalpy(alpha, theta) + heat, theta) - theta
+    raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 
 @rise.register(Constant)
 def _(alpha, theta, heat):
     return heat / alpha.constant
+
+
+def rise_through(alpha, theta, heat):
+    return temperature_of(alpha, enthalpy(alpha, theta) + heat, theta) - theta
+
+
+for law in LAWS:
+    if law is not Constant:
+        rise.register(law, rise_through)  # one by one: compiled code does not see the function that a role falls back to
 
 
 @role

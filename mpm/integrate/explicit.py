@@ -1,8 +1,8 @@
 """The mechanical step, symplectic Euler, chunk by chunk (physics.md 4).
 
 open      particles -> nodes
-each step nodes: v = p/m + dt g, walls
-          each chunk: gather v, L -> carry (APIC, FLIP) -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
+each step nodes: v = p/m + dt g, walls (XPIC: its extra transfers)
+          each chunk: gather v, L -> carry (APIC, FLIP, XPIC) -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
           clear these nodes, swap
 A chunk of particles stays in the first-level cache from gather to scatter.
 """
@@ -14,6 +14,7 @@ from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
+from mpm.integrate.sharpen import sharpen
 from mpm.jit import kernel
 from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
@@ -37,6 +38,7 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     for step in range(steps):
         now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
+        sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
             return

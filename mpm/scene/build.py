@@ -33,7 +33,7 @@ from mpm.state import (
     Thermal,
     Volume,
 )  # fmt: skip
-from mpm.transfer import Apic, Bspline, Flip, Mls
+from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
 
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
          3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
@@ -159,11 +159,13 @@ def spin_tensor(omega, D: int) -> np.ndarray:
 
 
 def schemes(experiment):
-    """Transfer of velocity, and blend and affine part of the transfer of temperature."""
+    """Transfer of velocity; blend, affine part and XPIC order (0: none) of the transfer of temperature."""
     velocity, temperature = experiment.method.transfer, experiment.method.temperature
-    scheme = {"apic": Apic, "flip": lambda: Flip(velocity.blend, 0.0), "pic": lambda: Flip(1.0, 0.0)}[type(velocity).kind]()
-    blend, affine = {"apic": (1.0, 1.0), "flip": (getattr(temperature, "blend", 0.0), 0.0), "pic": (1.0, 0.0)}[type(temperature).kind]
-    return scheme, blend, affine
+    moves = {"apic": lambda _: Apic(), "flip": lambda kind: Flip(kind.blend, 0.0), "pic": lambda _: Flip(1.0, 0.0),
+             "affine_flip": lambda kind: Flip(kind.blend, 1.0), "xpic": lambda kind: Xpic(kind.order)}  # fmt: skip
+    warms = {"apic": lambda _: (1.0, 1.0, 0), "flip": lambda kind: (kind.blend, 0.0, 0), "pic": lambda _: (1.0, 0.0, 0),
+             "affine_flip": lambda kind: (kind.blend, 1.0, 0), "xpic": lambda kind: (0.0, 0.0, kind.order)}  # fmt: skip
+    return moves[type(velocity).kind](velocity), *warms[type(temperature).kind](temperature)
 
 
 def gradient_operator(experiment):
@@ -188,7 +190,7 @@ def build(experiment, exact=None) -> Scene:
         raise SceneError(f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
     space = grid_space(experiment)
     zero = next(iter(experiment.bodies.values())).temperature
-    scheme, blend, affine = schemes(experiment)
+    scheme, blend, affine, sharp = schemes(experiment)
     D = experiment.grid.directions
     times = output_times(experiment)
     bodies, surroundings = zip(*(moving_body(experiment, name, zero) for name in names), strict=True)
@@ -207,6 +209,7 @@ def build(experiment, exact=None) -> Scene:
         gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * D),
         blend=blend,
         affine=affine,
+        sharp=sharp,
         times=times,
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,

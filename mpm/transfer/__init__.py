@@ -7,7 +7,7 @@ Momentum, forces, heat, conduction and surface exchange are all of this form (ph
 
 Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py)
           scatter_scalar, gather_scalar: one scalar field, for heat; scatter_square (square.py): the diagonal of its implicit operator
-          carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py)
+          carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py, xpic.py)
 Shapes    chunk arrays (component, particle of the chunk); nodes (node, D + 1): momentum (then velocity) and mass
 May use   mpm.basis, mpm.jit, mpm.state                      May not  see laws
 To add    a scheme: a file with a NamedTuple and its `carry`; a dimension: a file like plane.py
@@ -25,7 +25,6 @@ from mpm.transfer.roles import (
     collect,
     gather,
     gather_scalar,
-    locate,
     new_chunk,
     scatter,
     scatter_scalar,
@@ -34,8 +33,9 @@ from mpm.transfer.roles import (
     wants_change,
 )  # fmt: skip
 from mpm.transfer.square import scatter_square
+from mpm.transfer.xpic import Xpic
 
 __all__ = [
-    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "carry", "collect", "gather", "gather_scalar", "line", "locate", "new_chunk", "plane", "scatter",
+    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "gather", "gather_scalar", "line", "new_chunk", "plane", "scatter",
     "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
 ]  # fmt: skip

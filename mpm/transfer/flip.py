@@ -37,7 +37,7 @@ def _(scheme):
 
 
 @spread.register(Flip)
-def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
+def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
     chunk.G[:] = 0.0
     scatter(space, gradient, x, first, chunk, count, nodes, box)
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
@@ -47,7 +47,7 @@ def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
 
 
 @collect.register(Flip)
-def _(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
+def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
     gather(space, gradient, x, first, Chunk(chunk.m, chunk.a, chunk.A, chunk.G, change, chunk.C, chunk.L, chunk.f, chunk.S, chunk.e), count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 

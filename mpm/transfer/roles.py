@@ -107,11 +107,3 @@ def new_chunk(D, like):
 
     work = np.zeros((9, CHUNK), like.dtype)
     return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), vector(), tensor(), tensor(), vector(), tensor(), work)
-
-
-@kernel(inline=True)
-def locate(x, inverse):
-    """Index of the first of the three nodes of the quadratic basis in a padded array, and f = x/h - nearest node."""
-    s = x * inverse
-    nearest = np.floor(s + 0.5)
-    return int(nearest) + 1, s - nearest  # + PAD - 1

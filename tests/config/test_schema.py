@@ -66,7 +66,7 @@ def test_accepts_right_and_refuses_wrong(scene, request):
     for wrong in (-1, True, {"table": {"temperature": [1, 2]}}, {"bump": {"base": 1, "heat": 1, "at": 1, "width": 1, "x": 1}}, {}, {"constant": {"value": 1}}):
         assert not accepts(made, {**data, "materials": {"dough": {"density": 1, "heat": {"fourier": {**heat, "kappa": wrong}}}}}, made), wrong
     assert not accepts(made, {**data, "tiem": 1}, made)
-    assert not accepts(made, {**data, "method": {"transfer": "xpic"}}, made)
+    assert not accepts(made, {**data, "method": {"transfer": "flop"}}, made)
 
 
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)

@@ -1,0 +1,172 @@
+"""XPIC's extra transfers, of velocity and of temperature (transfer/xpic.py has the method).
+
+q_1 = u_i,   q_(j+1) = q_1 + (1 - P G) q_j,   with P weighted by mass, or by heat capacity, and walls in P as in any scatter
+P G keeps sum m_i q_i, so momentum and heat are kept exactly, whatever the order.
+"""
+
+import numpy as np
+from numba import literal_unroll
+
+from mpm.boundary import directions, extents
+from mpm.boundary.walls import clear, fold, impose, unfold
+from mpm.heat.local import rise
+from mpm.integrate.heat_step import over_nodes, reach, scatter_heat
+from mpm.jit import kernel, role
+from mpm.materials.laws import value
+from mpm.state import Isothermal, Thermal
+from mpm.transfer import CHUNK, Apic, Flip, Xpic, gather, gather_scalar, scatter, scatter_scalar
+
+FIELDS = 4  # scratch fields of `sharpened`
+
+
+@role
+def sharpen(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+    """Between `update` and gather: add q_k to the change of velocity in `force`. `spare` and `field` are the other buffers, zero before and after."""
+    raise TypeError(f"no transfer scheme {type(scheme).__name__}")
+
+
+@sharpen.register(Apic)
+@sharpen.register(Flip)
+def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+    return None
+
+
+@sharpen.register(Xpic)
+def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+    shape, D = extents(space), directions(space)
+    blend_nodes(field, nodes, force, spare, D, shape, box, 0.0, 0.0)
+    for _ in range(1, scheme.order):
+        there_and_back(space, gradient, bodies, chunk, field, spare, box)
+        fold(spare, D, shape, box.copy(), walls)
+        divide(spare, D, shape, box)
+        impose(spare, D, shape, box, walls)
+        blend_nodes(field, nodes, force, spare, D, shape, box, 1.0, 1.0)
+        unfold(field, D, shape, box, walls)
+        clear(spare, shape, box.copy())
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                for c in range(D):
+                    force[n, c] += field[n, c]
+    impose(force, D, shape, box, walls)
+    clear(field, shape, box.copy())
+
+
+@kernel
+def blend_nodes(field, nodes, force, spare, D, shape, box, old, seen):
+    """field <- v_i + old field - seen spare, v_i = nodes - force."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                for c in range(D):
+                    field[n, c] = nodes[n, c] - force[n, c] + old * field[n, c] - seen * spare[n, c]
+
+
+@kernel
+def there_and_back(space, gradient, bodies, chunk, field, spare, box):
+    """spare += P G field, as momentum and mass."""
+    touched = box.copy()
+    chunk.A[:] = 0.0
+    chunk.G[:] = 0.0
+    for body in literal_unroll(bodies):
+        pass_body(space, gradient, body.particles.x, body.particles.m, chunk, field, spare, touched)
+
+
+@kernel
+def pass_body(space, gradient, x, m, chunk, field, spare, box):
+    """There and back, one body."""
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        gather(space, gradient, x, first, chunk, count, field)
+        for p in range(count):
+            chunk.m[p] = m[first + p]
+            for c in range(chunk.a.shape[0]):
+                chunk.a[c, p] = m[first + p] * chunk.v[c, p]
+        scatter(space, gradient, x, first, chunk, count, spare, box)
+
+
+@kernel
+def divide(spare, D, shape, box):
+    """Momentum becomes velocity."""
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                inverse = 1.0 / spare[n, D] if spare[n, D] > 0.0 else 0.0
+                for c in range(D):
+                    spare[n, c] *= inverse
+
+
+@kernel
+def sharpened(space, body, nodes, walls, order):
+    """[1 - (1 - G P)^order] theta - theta of the particles (N,), for `correct` after a FLIP heat step; nodes: (FIELDS, n) scratch, zero before and after."""
+    return what_is_lost(body.thermal, space, body, nodes, walls, order)
+
+
+@role
+def what_is_lost(thermal, space, body, nodes, walls, order):
+    """See sharpened."""
+    raise TypeError(f"no heat for {type(thermal).__name__}")
+
+
+@what_is_lost.register(Isothermal)
+def _(thermal, space, body, nodes, walls, order):
+    return np.zeros(0)
+
+
+@what_is_lost.register(Thermal)
+def _(thermal, space, body, nodes, walls, order):
+    shape, D = extents(space), directions(space)
+    x, m = body.particles.x, body.particles.m
+    box = reach(space, x)
+    capacity, start, field, back = nodes[0], nodes[1], nodes[2], nodes[3]
+    work = np.zeros((2 + 3 * D, CHUNK))
+    scatter_heat(space, x, m, thermal, capacity, start, work)
+    fold(capacity.reshape(-1, 1), 0, shape, box.copy(), walls)
+    fold(start.reshape(-1, 1), 0, shape, box, walls)
+    over_nodes(start, capacity, field, shape, box, True)
+    unfold(start.reshape(-1, 1), 0, shape, box, walls)
+    unfold(field.reshape(-1, 1), 0, shape, box, walls)
+    at, slope, grad, zero = work[0], work[2 : 2 + D], work[2 + D : 2 + 2 * D], work[2 + 2 * D : 2 + 3 * D]
+    zero[:] = 0.0
+    for _ in range(1, order):
+        for first in range(0, x.shape[0], CHUNK):
+            count = min(CHUNK, x.shape[0] - first)
+            gather_scalar(space, x, first, count, field, at, slope, grad)
+            for p in range(count):
+                at[p] *= m[first + p] * value(thermal.alpha, thermal.zero + thermal.theta[first + p])
+            scatter_scalar(space, x, first, count, at, zero, zero, back)
+        fold(back.reshape(-1, 1), 0, shape, box.copy(), walls)
+        for n in range(back.shape[0]):
+            if capacity[n] > 0.0:
+                field[n] += start[n] - back[n] / capacity[n]
+            back[n] = 0.0
+        unfold(field.reshape(-1, 1), 0, shape, box, walls)
+    out = np.empty(x.shape[0])
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        gather_scalar(space, x, first, count, field, at, slope, grad)
+        for p in range(count):
+            out[first + p] = at[p] - thermal.theta[first + p]
+    for row in range(FIELDS):
+        clear(nodes[row].reshape(-1, 1), shape, box.copy())
+    return out
+
+
+@kernel
+def specific(thermal):
+    """alpha of every particle (N,) [J/(kg K)]."""
+    out = np.empty(thermal.theta.shape[0])
+    for i in range(len(out)):
+        out[i] = value(thermal.alpha, thermal.zero + thermal.theta[i])
+    return out
+
+
+@kernel
+def correct(thermal, alpha, change):
+    """theta += change, through enthalpy: alpha is that of the start of the step, with which `change` keeps the sum of heat."""
+    for i in range(len(change)):
+        old = thermal.theta[i]
+        thermal.theta[i] = old + rise(thermal.alpha, thermal.zero + old, alpha[i] * change[i])
