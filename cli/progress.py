@@ -123,4 +123,6 @@ class Single:
 
     def finished(self, name: str, record: Any) -> None:
         self.reporter.finished(name, record.line, False)
+        if record.advice:
+            self.reporter.note(record.advice)
         self.reporter.close()

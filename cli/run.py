@@ -22,7 +22,7 @@ def run(
     Of a config with a sweep it is the first; --set chooses another. Exit codes: 0 ok; 2 usage or config; 4 the point failed; 130 Ctrl-C.
     """
     from mpm.records.netcdf import seal, write_whole
-    from mpm.records.variables import STATUS
+    from mpm.records.variables import OK, STATUS
     from mpm.sweep.api import default_out, run_one, signals
 
     experiment = load(config, set_, smoke)
@@ -39,7 +39,7 @@ def run(
     if as_json:
         document({"out": folder, "dataset": folder / "run.nc", **record.line, "status": STATUS[record.status], "finals": record.finals, "facts": record.facts})
     else:
-        for name, value in record.finals.items():
+        for name, value in record.finals.items() if record.status == OK else ():
             say(f"  {name} = {value:.9g}", quiet=quiet)
         say(f"{folder / 'run.nc'}", quiet=quiet)
     raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 0 if record.status == 0 else 4))

@@ -3,7 +3,7 @@
 Written compactly (all series in one array: about 1 ms a point; a NetCDF file with a variable for each takes 20), because a sweep writes
 thousands and `collect` turns them into the labelled dataset. The seal's line carries what `status` needs.
 
-line    run_id, status, error, outcome, steps, wall_time, attempts, source, started, finished
+line    run_id, status, error, outcome, advice, steps, wall_time, attempts, source, started, finished
 file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,] [y,] x), axes/<x>, particles/<field> (obs, ...), particles/row_size (S)
         attribute `names`: JSON with the names of series and finals; `facts` and `config`: JSON
 """
@@ -20,7 +20,7 @@ from mpm.records.netcdf import seal, unseal
 from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
-LINE = "run_id status error outcome steps wall_time attempts source started finished".split()
+LINE = "run_id status error outcome advice steps wall_time attempts source started finished".split()
 
 
 @dataclass
@@ -31,6 +31,7 @@ class Record:
     status: int
     error: str = ""
     outcome: str = ""
+    advice: str = ""
     steps: int = 0
     wall_time: float = 0.0
     attempts: int = 1
@@ -68,6 +69,7 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
         status=status,
         error=error,
         outcome=outcome.kind,
+        advice=outcome.advice if status != OK else "",
         steps=int(run.steps),
         wall_time=float(run.wall_time),
         times=np.asarray(run.times, dtype=float),

@@ -35,7 +35,7 @@ def status(out: Path) -> dict[str, Any]:
         "stale": sorted(run_id for run_id, line in lines.items() if line["source"] != source_hash()),
         "damaged": damaged,
         "failures": [
-            {"reason": why, "count": len(ids), "example": label(points.cases[ids[0]]), "error": lines[ids[0]]["error"], "run_id": ids[0]}
+            {"reason": why, "count": len(ids), "example": label(points.cases[ids[0]])} | {name: lines[ids[0]][name] for name in ("error", "advice", "run_id")}
             for why, ids in sorted(reasons.items(), key=lambda item: -len(item[1]))
         ],
         "slowest": [{"point": label(points.cases[run_id]), "seconds": lines[run_id]["wall_time"], "run_id": run_id} for run_id in slow],
@@ -60,6 +60,8 @@ def said(found: dict[str, Any]) -> str:
     told = [f"{found['out']}: {found['name']}, {found['points']} points: " + ", ".join(f"{count} {name}" for name, count in found["counts"].items() if count)]
     for failure in found["failures"]:
         told.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or failure['run_id']}: {failure['error']}")
+        if failure["advice"]:
+            told.append(f"      {failure['advice']}")
     if found["stale"]:
         told.append(f"  {len(found['stale'])} from other source (--rerun stale runs them again)")
     if found["damaged"]:
