@@ -3,6 +3,7 @@
     rho alpha(theta) d theta/dt = div(kappa(theta) grad theta),      -kappa d theta/dn = beta (theta - outside)     0 <= beta <= inf
 
 nodes      quadratic B-splines of a body's box of nodes; matrices as stencils          geometry   cut quadrature to M, K, B: once a shape and grid
+around     surroundings over time, radiation
 system     one body's laws and surroundings                                            band       compiled band Cholesky
 linear     constant laws: consistent mass, SDIRK of order 4 or 2 (sdirk)               tables     theta(h), Kirchhoff's potential Pi(h)
 chebyshev  laws of temperature: lumped mass, enthalpy (enthalpy), RKC of order 2       newton     the same equations by SDIRK and Newton

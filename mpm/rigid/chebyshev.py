@@ -10,6 +10,7 @@ Fails when   beta h/kappa is large (lambda grows with it): implicit then.
 import numpy as np
 
 from mpm.jit import kernel
+from mpm.rigid.around import Around, between
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.nodes import apply
 
@@ -39,10 +40,10 @@ def spectral_radius(problem, conductivity: float) -> float:
 
 
 @kernel
-def chebyshev(problem, h, f0, q0, dt, s, new, f1):
+def chebyshev(problem, first, final, changes, h, f0, q0, dt, s, new, f1):
     """One step of s >= 2 stages: `new` enthalpies, rate f1 there, (heat taken in the step, its rate at the end, squared error norm).
 
-    h, f0 (N,) and q0 [W] are the state, its rate and the heat taken a second at the start.
+    h, f0 (N,) and q0 [W] are the state, its rate and the heat taken a second at the start; first, final: Around at both ends, equal unless it `changes`.
     """
     n = len(h)
     w0 = 1.0 + DAMPING / s**2
@@ -59,6 +60,8 @@ def chebyshev(problem, h, f0, q0, dt, s, new, f1):
         before[i] = h[i]
         last[i] = h[i] + mu * f0[i]
     q_before, q_last = 0.0, mu * q0
+    t_before, t_last = 0.0, mu / dt  # of the step: time goes by the same recurrence
+    supply, sky = np.empty(n if changes else 0), np.empty(len(first.sky))
     z1, z2, dz1, dz2, d2z1, d2z2 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
     for _ in range(2, s + 1):
         z = 2.0 * w0 * z1 - z2
@@ -68,18 +71,24 @@ def chebyshev(problem, h, f0, q0, dt, s, new, f1):
         a1 = 1.0 - z1 * b1
         mu, nu = 2.0 * w0 * b / b1, -b / b2
         step = mu * w1 / w0 * dt
-        taken = rate(problem, last, f1, theta, work)
+        if changes:
+            received = between(first, final, t_last, supply, sky)
+            taken = rate(problem, Around(supply, received, sky), last, f1, theta, work)
+        else:
+            taken = rate(problem, first, last, f1, theta, work)
         rest, lag = 1.0 - mu - nu, a1 * step
         for i in range(n):
             after[i] = mu * last[i] + nu * before[i] + rest * h[i] + step * f1[i] - lag * f0[i]
         q_after = mu * q_last + nu * q_before + step * taken - lag * q0
         before, last, after = last, after, before
         q_before, q_last = q_last, q_after
+        t_after = mu * t_last + nu * t_before + (step - lag) / dt
+        t_before, t_last = t_last, t_after
         b2, b1 = b1, b
         z2, z1, dz2, dz1, d2z2, d2z1 = z1, z, dz1, dz, d2z1, d2z
     for i in range(n):
         new[i] = last[i]
-    q1 = rate(problem, new, f1, theta, work)
+    q1 = rate(problem, final, new, f1, theta, work)
     error = 0.0
     for i in range(n):
         e = 0.8 * (h[i] - new[i]) + 0.4 * dt * (f0[i] + f1[i])
@@ -94,10 +103,11 @@ class ChebyshevSteps(Enthalpy):
 
     def __init__(self, system, tolerance: float):
         super().__init__(system, tolerance)
-        self.radius = MARGIN * self.problem.table.steepest * spectral_radius(self.problem, self.problem.table.conductivity)
+        stiff = self.problem if len(system.hot) == 0 else self.problem._replace(on_theta=self.problem.on_theta + system.hot)
+        self.radius = MARGIN * self.problem.table.steepest * spectral_radius(stiff, self.problem.table.conductivity)
         self.rate = np.empty_like(self.state)
         scratch = np.empty((2, len(self.state)))
-        self.taken = rate(self.problem, self.state, self.rate, scratch[0], scratch[1])
+        self.taken = rate(self.problem, self.around(0.0), self.state, self.rate, scratch[0], scratch[1])
         self.evaluations = 1
 
     def first_size(self, end: float) -> float:
@@ -108,7 +118,8 @@ class ChebyshevSteps(Enthalpy):
         if s > STAGES:
             return float((s / STAGES) ** (2 * self.power))  # a step that many stages short
         new, f1 = np.empty_like(self.state), np.empty_like(self.state)
-        q, q1, error = chebyshev(self.problem, self.state, self.rate, self.taken, dt, s, new, f1)
+        first, changes = self.around(self.now), self.system.programmes.changes
+        q, q1, error = chebyshev(self.problem, first, self.around(self.now + dt), changes, self.state, self.rate, self.taken, dt, s, new, f1)
         self.evaluations += s
         self.trial = dt, new, f1, q, q1
         return float(np.sqrt(error)) / self.allowed
@@ -118,6 +129,7 @@ class ChebyshevSteps(Enthalpy):
         self.columns = np.stack([new - self.state, dt * self.rate, dt * f1])
         self.steps = self.q, np.array([q, dt * self.taken, dt * q1])
         self.state, self.rate, self.taken, self.q = new, f1, q1, self.q + q
+        self.now += dt
 
     def dense(self, s):
         """Hermite basis (S, 3), columns (3, N), exchanged heat (S,)."""

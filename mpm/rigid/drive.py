@@ -4,7 +4,7 @@ A method has
     attempt(dt) -> error over tolerance (nan or inf: rejected)      accept()
     dense(s) -> (basis (S, m), columns (m, N), exchanged (S,))      temperature(state) -> theta - zero      heat(state) [J]
     state, first (state at the start), first_size(end), power (error ~ dt^power), replan (a new size is costly), radius [1/s] (0 without an explicit limit)
-    floor (steps this short are taken whatever their error: the cell resolves nothing faster)
+    floor (steps this short are taken whatever their error: the cell resolves nothing faster), longest (of a step, so that none misses a programme)
 state(t + s dt) = before + basis @ columns is the method's own variable: temperature, or specific enthalpy.
 """
 
@@ -91,7 +91,7 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
     for k, (probe, level) in enumerate(watch.thresholds):
         if seen[probe] == level:
             trace.crossings[k] = 0.0
-    wanted = fixed or method.first_size(end)
+    wanted = fixed or min(method.first_size(end), method.longest)
     count = max(1, math.ceil((end - t) / wanted * (1 - 1e-9)))
     dt = (end - t) / count
     while count > 0:
@@ -132,7 +132,7 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
             break
         if count and not fixed:
             factor = min(GROW, SAFETY * max(error, 1e-9) ** (-1 / method.power))
-            wanted = max(dt * factor, min(method.floor, dt))
+            wanted = min(max(dt * factor, min(method.floor, dt)), method.longest)
             fewer = max(1, math.ceil((end - t) / wanted))
             if not method.replan or count - fewer > 2 or factor < 0.9:
                 count = fewer

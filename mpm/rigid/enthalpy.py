@@ -13,6 +13,8 @@ import numpy as np
 
 from mpm.jit import kernel
 from mpm.materials.laws import Constant
+from mpm.rigid.around import Radiant, radiate
+from mpm.rigid.geometry import evaluated
 from mpm.rigid.nodes import apply
 from mpm.rigid.tables import Table, enthalpies, make_table, temperatures
 
@@ -27,10 +29,9 @@ class Lumped(NamedTuple):
     weight: np.ndarray  # (N,) the same, zero on idle nodes
     on_theta: np.ndarray  # (n, N) stencil applied to theta - zero
     on_potential: np.ndarray  # (n, N) or (0, N) stencil applied to Pi
-    supply: np.ndarray
     facing: np.ndarray
-    received: float
     table: Table
+    radiant: Radiant
 
 
 def make_lumped(system) -> tuple[Lumped, np.ndarray]:
@@ -42,9 +43,15 @@ def make_lumped(system) -> tuple[Lumped, np.ndarray]:
         on_theta, on_potential = system.kappa.constant * shaped.stiffness + system.exchange, np.zeros((0, len(mass)))
     else:
         on_theta, on_potential = system.exchange, shaped.stiffness
-    start = np.where(shaped.active, enthalpies(system.alpha, system.zero, np.array([system.start]))[0], 0.0)
+    start = np.full(len(mass), system.start)
+    if system.field is not None:
+        index, spline = evaluated(shaped.nodes, shaped.x)
+        start[:] = 0.0
+        np.add.at(start, index, (shaped.w * system.field(shaped.x))[:, None] * spline)
+        start = np.where(shaped.active, start / np.where(shaped.active, shaped.volume, 1.0), system.start)
+    start = np.where(shaped.active, enthalpies(system.alpha, system.zero, start), 0.0)
     weight = np.where(shaped.active, mass, 0.0)
-    return Lumped(shaped.nodes.diff, mass, weight, on_theta, on_potential, system.supply, system.facing, system.received, table), start
+    return Lumped(shaped.nodes.diff, mass, weight, on_theta, on_potential, system.facing, table, system.radiant), start
 
 
 @kernel(inline=True)
@@ -63,7 +70,7 @@ def split(table, h, theta, potential, both):
 
 
 @kernel
-def rate(problem, h, out, theta, work):
+def rate(problem, around, h, out, theta, work):
     """dh/dt [W/kg] into `out`; returns the heat taken in a second [W]. theta and work are scratch."""
     both = len(problem.on_potential) > 0
     split(problem.table, h, theta, out, both)
@@ -73,9 +80,9 @@ def rate(problem, h, out, theta, work):
         work += out
     else:
         apply(problem.on_theta, problem.diff, theta, work)
-    taken, total, size = problem.received, 0.0, 0.0
+    taken, total, size = around.received + radiate(problem.radiant, around.sky, theta, work), 0.0, 0.0
     for i in range(len(h)):
-        net = problem.supply[i] - work[i]
+        net = around.supply[i] - work[i]
         total += net
         size += abs(net)
         out[i] = net / problem.mass[i]
@@ -96,11 +103,18 @@ class Enthalpy:
         self.system, self.tolerance = system, tolerance
         self.problem, self.state = make_lumped(system)
         self.first, self.q = self.state, 0.0
+        self.now, self.longest, self.steady = 0.0, system.programmes.longest, None
         self.weight = self.problem.weight
         low, high = enthalpies(system.alpha, system.zero, np.array([system.coldest, system.hottest]))
         lowest = 1.0 / self.problem.table.steepest  # [J/(kg K)]
         self.allowed = tolerance * max(high - low, lowest * system.span) * np.sqrt(self.weight.sum())
         self.diffusion = self.problem.table.conductivity / (system.density * lowest * system.geometry.nodes.h**2)  # [1/s]
+
+    def around(self, t: float):
+        """What surrounds the body at time t."""
+        if self.steady is None or self.system.programmes.changes:
+            self.steady = self.system.programmes.around(t)
+        return self.steady
 
     def temperature(self, state):
         return temperatures(self.problem.table, np.ascontiguousarray(state))

@@ -28,6 +28,7 @@ class Geometry(NamedTuple):
     active: np.ndarray  # (N,) nodes whose spline reaches the body
     x: np.ndarray  # (Q, d) volume points
     w: np.ndarray  # (Q,) with the weight r where axisymmetric
+    faces: tuple[tuple[np.ndarray, np.ndarray], ...]  # points and weights of each surface
     sight: tuple[np.ndarray, np.ndarray]  # splines at the points where extremes are looked for: cells' quadrature points nearest the middle, and the surface
 
 
@@ -64,15 +65,16 @@ def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sid
     sw = surface.w * surface.x[:, 0] if axisymmetric else surface.w
     mass, stiffness = np.zeros((2, len(nodes.diff), nodes.size))
     assemble(nodes, d, volume.x, w, volume.cell, counts, True, mass, stiffness)
-    exchange = []
+    exchange, faces = [], []
     for side in sides:
         part = shape.faces(surface.normal, side)
         stencil = np.zeros_like(mass)
         assemble(nodes, d, surface.x[part], sw[part], surface.cell[part], counts, False, stencil, stencil)
         exchange.append(stencil)
+        faces.append((surface.x[part], sw[part]))
     sight = evaluated(nodes, np.concatenate([volume.x[_middles(volume)], surface.x]))
     sums = tuple(row_sums(b, nodes.diff) for b in exchange)
-    return Geometry(nodes, d, mass, stiffness, tuple(exchange), row_sums(mass, nodes.diff), sums, mass[0] > 0, volume.x, w, sight)
+    return Geometry(nodes, d, mass, stiffness, tuple(exchange), row_sums(mass, nodes.diff), sums, mass[0] > 0, volume.x, w, tuple(faces), sight)
 
 
 def _middles(volume) -> np.ndarray:

@@ -16,6 +16,7 @@ import numpy as np
 
 from mpm.jit import kernel
 from mpm.rigid.band import back_substitute, factorise, fill
+from mpm.rigid.geometry import evaluated
 from mpm.rigid.nodes import apply
 from mpm.rigid.sdirk import TABLEAUS
 
@@ -29,14 +30,12 @@ class Problem(NamedTuple):
     diff: np.ndarray
     mass: np.ndarray
     matrix: np.ndarray
-    supply: np.ndarray
     facing: np.ndarray
-    received: float
     weight: np.ndarray  # M 1
 
 
 @kernel
-def stages(problem, band, a, error, dt, u, k, flux):
+def stages(problem, band, a, error, dt, u, supply, received, k, flux):
     """Stage slopes k (m, N) and the exchange rate of each stage, by a factor of M + gamma dt A; the square of the filtered error's mass norm."""
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
@@ -47,9 +46,9 @@ def stages(problem, band, a, error, dt, u, k, flux):
                 y[p] += dt * a[i, j] * k[j, p]
         apply(problem.matrix, problem.diff, y, work)
         for p in range(n):
-            work[p] = problem.supply[p] - work[p]
+            work[p] = supply[i, p] - work[p]
         back_substitute(band, work)
-        taken, total, size = problem.received, 0.0, 0.0
+        taken, total, size = received[i], 0.0, 0.0
         for p in range(n):
             k[i, p] = work[p]
             taken -= problem.facing[p] * (y[p] + dt * a[i, i] * work[p])
@@ -88,17 +87,38 @@ class LinearSteps:
         shaped, capacity = system.geometry, system.density * system.alpha.constant
         matrix = system.kappa.constant * shaped.stiffness + system.exchange
         self.weight = capacity * shaped.volume
-        self.problem = Problem(shaped.nodes.diff, capacity * shaped.mass, matrix, system.supply, system.facing, system.received, self.weight)
+        self.problem = Problem(shaped.nodes.diff, capacity * shaped.mass, matrix, system.facing, self.weight)
         self.allowed = tolerance * system.span * np.sqrt(self.weight.sum())
         self.idle = ~shaped.active
         self.band, self.size = np.empty((shaped.nodes.size, shaped.nodes.diff[-1] + 1)), None
-        self.state = np.where(self.idle, 0.0, system.start - system.zero)
+        self.now, self.longest, self.steady = 0.0, system.programmes.longest, None
+        self.state = np.where(self.idle, 0.0, system.start - system.zero) if system.field is None else self.project(system.field)
         self.first, self.q, self.power = self.state, 0.0, self.tableau.power
         conductivity = system.kappa.constant
         self.floor = FLOOR * shaped.nodes.h**2 * capacity / conductivity if conductivity > 0 else 0.0
 
     def first_size(self, end: float) -> float:
         return min(end, max(self.floor, end / 4096)) if self.floor > 0 else end
+
+    def project(self, field):
+        """The start by least squares over the body: M u = rho alpha int N (field - zero)."""
+        shaped, load = self.system.geometry, np.zeros(len(self.weight))
+        index, spline = evaluated(shaped.nodes, shaped.x)
+        each = (self.system.density * self.system.alpha.constant * shaped.w * (field(shaped.x) - self.system.zero))[:, None] * spline
+        np.add.at(load, index, each)
+        fill(self.band, self.problem.diff, self.problem.mass, 1.0, self.problem.matrix, 0.0, self.idle)
+        if factorise(self.band) >= 0:
+            raise ValueError("the mass matrix of a rigid body is singular: the body is too thin for the cell")
+        load[self.idle] = 0.0
+        back_substitute(self.band, load)
+        return load
+
+    def surroundings(self, dt: float):
+        """Supply (m, N) and its sum (m,) at the stages of a step."""
+        if self.steady is None or self.system.programmes.changes:
+            around = [self.system.programmes.around(self.now + part * dt) for part in self.tableau.a.sum(axis=1)]
+            self.steady = np.array([one.supply for one in around]), np.array([one.received for one in around])
+        return self.steady
 
     def attempt(self, dt: float) -> float:
         """Error of a step of size dt over the tolerance."""
@@ -110,7 +130,8 @@ class LinearSteps:
                 self.size = None
                 return np.inf
         k, flux = np.empty((len(tableau.a), len(self.state))), np.empty(len(tableau.a))
-        square = stages(self.problem, self.band, tableau.a, tableau.error, dt, self.state, k, flux)
+        supply, received = self.surroundings(dt)
+        square = stages(self.problem, self.band, tableau.a, tableau.error, dt, self.state, supply, received, k, flux)
         self.stages, self.fluxes, self.dt = k, flux, dt
         return float(np.sqrt(max(square, 0.0))) / self.allowed
 
@@ -119,6 +140,7 @@ class LinearSteps:
         self.q_before = self.q
         self.state = self.state + (self.dt * weights) @ self.stages
         self.q += self.dt * float(weights @ self.fluxes)
+        self.now += self.dt
 
     def dense(self, s):
         """Basis (S, m) and columns (m, N), exchanged heat (S,): state = before + basis @ columns."""

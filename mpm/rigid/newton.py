@@ -12,6 +12,7 @@ Good values  large beta h/kappa (beta = inf), fine cells with smooth alpha(theta
 import numpy as np
 
 from mpm.jit import kernel
+from mpm.rigid.around import radiate_slope
 from mpm.rigid.band import back_substitute, factorise
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.sdirk import TABLEAUS
@@ -39,6 +40,7 @@ def jacobian(problem, band, h, dt, slope):
         if len(problem.on_potential) > 0:
             for i in range(n - k):
                 band[i, k] += dt * problem.on_potential[o, i] * root[i] * root[i + k]
+    radiate_slope(problem.radiant, theta, dt, band)
     for i in range(n):
         band[i, 0] += problem.mass[i] / slope[i]
 
@@ -59,11 +61,11 @@ class NewtonSteps(Enthalpy):
     def first_size(self, end: float) -> float:
         return min(end, self.floor) if self.floor > 0 else end
 
-    def stage(self, base, dt: float, h, f):
+    def stage(self, base, dt: float, around, h, f):
         """Newton for h = base + dt F(h) from the guess h: (h, heat taken in a second) with f = F(h), or None where it does not converge."""
         problem, work = self.problem, np.empty((3, len(h)))
         theta, scratch, slope = work
-        taken = rate(problem, h, f, theta, scratch)
+        taken = rate(problem, around, h, f, theta, scratch)
         residual = h - base - dt * f
         size = self.norm(residual)
         for _ in range(ITERATIONS):
@@ -78,7 +80,7 @@ class NewtonSteps(Enthalpy):
             step /= slope
             for halving in range(HALVINGS):
                 trial = h - step / 2**halving
-                taken = rate(problem, trial, f, theta, scratch)
+                taken = rate(problem, around, trial, f, theta, scratch)
                 residual = trial - base - dt * f
                 new = self.norm(residual)
                 if new < size:
@@ -95,7 +97,7 @@ class NewtonSteps(Enthalpy):
         a = self.tableau.a
         f, q, guess = np.empty((len(a), len(self.state))), np.empty(len(a)), self.state
         for i, row in enumerate(a):
-            found = self.stage(self.state + (dt * row[:i]) @ f[:i], dt * row[i], guess, f[i])
+            found = self.stage(self.state + (dt * row[:i]) @ f[:i], dt * row[i], self.around(self.now + dt * row.sum()), guess, f[i])
             if found is None:
                 return np.inf
             guess, q[i] = found
@@ -107,6 +109,7 @@ class NewtonSteps(Enthalpy):
         self.before_q = self.q
         self.state = self.state + weights @ self.rates
         self.q += float(weights @ self.taken)
+        self.now += self.dt
 
     def dense(self, s):
         """Basis (S, m), columns (m, N), exchanged heat (S,)."""

@@ -11,9 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from mpm.heat.exchange import STEFAN_BOLTZMANN
+from mpm.heat.programmes import at, bounds
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
-from mpm.rigid.geometry import Geometry, geometry
+from mpm.rigid.around import Programmes, Radiant
+from mpm.rigid.geometry import Geometry, evaluated, geometry
 
 PENALTY = 1e5
 
@@ -21,6 +24,9 @@ PENALTY = 1e5
 @dataclass(frozen=True)
 class RigidBody:
     """A body that does not move. `surfaces`: (side, beta >= 0 or inf [W/(m2 K)], outside [K]) each; the rest is insulated.
+
+    fluxes: (side, q into the body [W/m2]); radiation: (side, emissivity, surroundings [K]); outside and surroundings are numbers or mpm.heat.programmes.
+    field: temperatures at the start at points (P, d) -> (P,), where they are not the same everywhere.
 
     shape: mpm.scene.shapes; temperature [K] at the start; density [kg/m3]; kappa [W/(m K)], alpha [J/(kg K)]: numbers or mpm.materials.laws.
     """
@@ -30,7 +36,10 @@ class RigidBody:
     density: float
     kappa: Any
     alpha: Any
-    surfaces: tuple[tuple[str, float, float], ...] = ()
+    surfaces: tuple[tuple[str, float, Any], ...] = ()
+    fluxes: tuple[tuple[str, float], ...] = ()
+    radiation: tuple[tuple[str, float, Any], ...] = ()
+    field: Any = None
 
 
 @dataclass(frozen=True)
@@ -42,11 +51,13 @@ class System:
     kappa: Any
     alpha: Any
     start: float  # [K]
+    field: Any  # theta(x) at the start, or None
     zero: float  # [K]
     exchange: np.ndarray  # (n, N) stencil of sum beta B
     facing: np.ndarray  # (N,) sum beta int N over surfaces
-    supply: np.ndarray  # (N,) sum beta (outside - zero) int N
-    received: float  # its sum
+    programmes: Programmes  # what surrounds the body, over time
+    radiant: Radiant
+    hot: np.ndarray  # (n, N) stencil of radiation's slope at the hottest; (0, 0) where nothing radiates
     span: float  # largest temperature difference in the data [K]
     coldest: float  # [K]
     hottest: float  # [K]
@@ -57,37 +68,55 @@ def law(given):
     return Constant(float(given)) if isinstance(given, int | float) else given
 
 
-def make_system(body: RigidBody, axisymmetric: bool, h: float, origin) -> System:
+def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0) -> System:
+    """`end`: how long fluxes act, for the range of temperatures [s]."""
     kappa, alpha = law(body.kappa), law(body.alpha)
-    shaped = geometry(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), tuple(side for side, _, _ in body.surfaces))
+    sides = tuple(entry[0] for entry in (*body.surfaces, *body.fluxes, *body.radiation))
+    shaped = geometry(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides)
+    n = len(body.surfaces)
     betas = [float(beta) for _, beta, _ in body.surfaces]
-    data = [body.temperature, *(outside for _, beta, outside in body.surfaces if beta > 0)]
+    around = [outside for _, beta, outside in body.surfaces if beta > 0] + [sky for _, emissivity, sky in body.radiation if emissivity > 0]
+    data = [float(t) for t in (body.temperature, *(t for one in around for t in bounds(one)))]
+    if body.field is not None:
+        data += [float(t) for t in (np.min(body.field(shaped.x)), np.max(body.field(shaped.x)))]
     conductivity = max(value(kappa, t) for t in data)
     betas = [PENALTY * conductivity / h if math.isinf(beta) else beta for beta in betas]
     depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
     stiffest = int(np.argmax(betas)) if betas else 0
-    zero = body.surfaces[stiffest][2] if betas and betas[stiffest] * depth > conductivity else body.temperature
-    exchange, facing, supply = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size)
-    for (_, _, outside), beta, stencil, area in zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=True):
+    zero = float(at(body.surfaces[stiffest][2], 0.0)) if betas and betas[stiffest] * depth > conductivity else float(body.temperature)
+    exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
+    for (_, _, outside), beta, stencil, area in zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False):
         if beta > 0:
             exchange += beta * stencil
             facing += beta * area
-            supply += beta * (outside - zero) * area
+            if isinstance(outside, int | float):
+                steady += beta * (outside - zero) * area
+            else:
+                forcing.append((outside, beta * area))
+    for (_, q), area in zip(body.fluxes, shaped.area[n:], strict=False):
+        steady += q * area
+        rise = abs(q) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
+        steep = abs(q) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
+        data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if q > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
+    radiant, hot = radiating(body, shaped, zero, n + len(body.fluxes), max(data))
     span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
+    skies = tuple(float(sky) if isinstance(sky, int | float) else sky for _, _, sky in body.radiation)
+    programmes = Programmes(steady, tuple(forcing), skies, zero)
     return System(
-        shaped,
-        float(body.density),
-        kappa,
-        alpha,
-        float(body.temperature),
-        float(zero),
-        exchange,
-        facing,
-        supply,
-        float(supply.sum()),
-        span,
-        min(data),
-        max(data),
+        shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data), max(data),
         stiff,
-    )
+    )  # fmt: skip
+
+
+def radiating(body: RigidBody, shaped: Geometry, zero: float, first: int, hottest: float) -> tuple[Radiant, np.ndarray]:
+    """Points that radiate, and the stencil of their slope at the hottest temperature; `first`: number of the first radiating surface."""
+    splines = 3**shaped.dimension
+    parts = [(np.zeros((0, splines), dtype=np.int64), np.zeros((0, splines)), np.zeros(0), np.zeros(0, dtype=np.int64))]
+    hot = np.zeros_like(shaped.mass) if body.radiation else np.zeros((0, 0))
+    for k, (_, emissivity, _) in enumerate(body.radiation):
+        x, w = shaped.faces[first + k]
+        index, spline = evaluated(shaped.nodes, x)
+        parts.append((index, spline, STEFAN_BOLTZMANN * emissivity * w, np.full(len(w), k)))
+        hot += 4 * STEFAN_BOLTZMANN * emissivity * hottest**3 * shaped.exchange[first + k]
+    return Radiant(*(np.ascontiguousarray(np.concatenate(p)) for p in zip(*parts, strict=True)), float(zero)), hot

@@ -5,27 +5,28 @@ import time
 import numpy as np
 
 from mpm.scene.build import SceneError, law, output_times, watch
-from mpm.scene.exchange import robin
+from mpm.scene.exchange import programme, robin
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 
 
-def rigid_bodies(experiment) -> list:
-    """The bodies of a rigid scene; SceneError for one that has nothing to do."""
+def rigid_bodies(experiment, field=None) -> list:
+    """The bodies of a rigid scene, with the temperatures `field(x)` at the start where given; SceneError for one that has nothing to do."""
     from mpm.rigid import RigidBody
     if experiment.grid.basis != "quadratic":
         raise SceneError(f"grid.basis {experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out")
-    for entry in experiment.surfaces:
-        if entry.flux is not None or entry.radiation is not None or not all(isinstance(outside, float) for _, outside in robin(entry)):
-            raise SceneError(f"rigid bodies know no flux, radiation or temperature over time yet: give {entry.of} an `elastic` law")
     bodies = []
     for name, body in experiment.bodies.items():
         material = experiment.materials[body.material]
         if material.heat is None:
             raise SceneError(f"materials.{body.material} has neither `elastic` nor `heat`: nothing would happen in {name}")
-        surfaces = tuple((s.side, beta, outside) for s in experiment.surfaces if s.of == name for beta, outside in robin(s))
+        entries = [entry for entry in experiment.surfaces if entry.of == name]
+        surfaces = tuple((entry.side, beta, outside) for entry in entries for beta, outside in robin(entry))
+        fluxes = tuple((entry.side, entry.flux.q) for entry in entries if entry.flux is not None)
+        radiation = tuple((e.side, e.radiation.emissivity, programme(e.radiation.surroundings)) for e in entries if e.radiation is not None)
         outline = shape(body.shape, experiment.grid.dimension)
-        bodies.append(RigidBody(outline, body.temperature, material.density, law(material.heat.kappa), law(material.heat.alpha), surfaces))
+        kappa, alpha = law(material.heat.kappa), law(material.heat.alpha)
+        bodies.append(RigidBody(outline, body.temperature, material.density, kappa, alpha, surfaces, fluxes, radiation, field))
     return bodies
 
 
@@ -44,7 +45,8 @@ def run_rigid(experiment, exact=None, beat=None) -> Run:
     shift = np.array(experiment.method.offset) * grid.cell
     levels = [(at.probe, at.kelvin) for at in found.values()]
     look = Looks(experiment, times, exact)
-    solved = solve(rigid_bodies(experiment), grid.dimension, grid.cell, -shift, experiment.time.end, times, experiment.output.probes, levels, method, beat,
+    field = (lambda x: exact(x + shift, 0.0)) if getattr(exact, "starts", False) else None
+    solved = solve(rigid_bodies(experiment, field), grid.dimension, grid.cell, -shift, experiment.time.end, times, experiment.output.probes, levels, method, beat,
                    snapshots=(look.times, look.points))  # fmt: skip
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
