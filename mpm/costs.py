@@ -31,8 +31,9 @@ def estimate_moving(experiment) -> dict:
     scene = build(experiment)
     now = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports)
     particles = sum(len(body.particles.m) for body in scene.bodies)
-    step = scene.step or now.step() * scene.safety
-    pace = min(scene.heat_step or now.pace, experiment.time.end)
+    S = experiment.time.scale
+    step = (scene.step or now.step() * scene.safety) * S
+    pace = min((scene.heat_step or now.pace) * S, experiment.time.end)
     binds = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
     steps = math.ceil(experiment.time.end / min(step, pace))
     dimension = experiment.grid.dimension
@@ -43,7 +44,7 @@ def estimate_moving(experiment) -> dict:
         "seconds": steps * particles * NS_PARTICLE_STEP[dimension] * 1e-9,
         "memory_bytes": 150_000_000 + particles * BYTES_PARTICLE[dimension] + math.prod(extents(scene.space)) * 80,
         "output_bytes": output_bytes(experiment, particles),
-        "limits": now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {}),
+        "limits": {name: limit * S for name, limit in (now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {})).items()},
         "binds": "heat pace" if pace < step else binds,
         "physics": physics(experiment),
     }

@@ -23,9 +23,10 @@ def run_point(experiment, beat=None) -> Run:
         run = run_zero(experiment, exact, beat)
     elif experiment.moving:
         from mpm.scene.build import build
+        from mpm.scene.scaling import physical
         from mpm.simulation import simulate
 
-        run = simulate(build(experiment, exact), beat)
+        run = physical(simulate(build(experiment, exact), beat), experiment)
     else:
         from mpm.scene.rigid import run_rigid
 
@@ -58,7 +59,7 @@ def warm(experiment) -> None:
         from mpm.simulation import Clock
 
         scene = build(experiment)
-        step = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports).step()
+        step = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports).step() * experiment.time.scale
         short["time"]["end"] = min(experiment.time.end, step)
     else:
         short["time"]["end"] = experiment.time.end * 1e-3

@@ -58,6 +58,7 @@ class Scene:
     heat_step: float | None
     surroundings: tuple = ()  # mpm.heat.surroundings.Surroundings or None, by body
     heat: HeatMethod = HeatMethod()
+    scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
     watch: Any = None  # what to record: mpm.observe.Watch
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
@@ -147,7 +148,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
             order, tolerance = scene.heat.order, scene.heat.tolerance
             gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, order, tolerance, scene.blend, scene.affine)
             if iterations < 0:
-                return outcome(HEAT_SOLVER, time=clock.time, step=clock.steps)
+                return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += iterations
         else:
             gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
@@ -181,7 +182,7 @@ def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
         step = scene.step or now.step() * scene.safety
         clock.first_step = clock.first_step or step
         if step < clock.first_step / UNDERFLOW:
-            return outcome(STEP_UNDERFLOW, time=clock.time, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
+            return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
         left = until - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
         dt, block = left / count, min(most, count)
@@ -198,14 +199,14 @@ def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
             clock.steps += int(report[STEP])
             clock.time += dt * int(report[STEP])
             detail = f"of {scene.names[failed]}" if len(scene.names) > 1 else ""
-            return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time, clock.steps, detail)
+            return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
         clock.time = until if block == count else clock.time + dt * block
         for name, body in zip(scene.names, scene.bodies, strict=True):
             bad = finite(body)
             if bad:
-                return outcome(NON_FINITE, time=clock.time, step=clock.steps, detail=f"({bad} of {name})")
-        if beat is not None and beat(clock.time / float(scene.times[-1]), clock.time):
-            return outcome(BUDGET, time=clock.time, step=clock.steps)
+                return outcome(NON_FINITE, time=clock.time * scene.scale, step=clock.steps, detail=f"({bad} of {name})")
+        if beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale):
+            return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     return outcome(COMPLETED)
 

@@ -69,6 +69,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.walls, each("walls")),
     (scene.mechanics, once),
     (scene.gravity, once),
+    (scene.scaling, once),
     (output.clock, once),
     (output.probe, output.probes),
     (output.observable, output.observables),

@@ -30,6 +30,7 @@ class Clock(Model):
     end: Time = doc(description="time at the end")
     step: TimeOrAuto = doc("auto", description="time step; auto takes the smallest of all limits")
     safety: Positive = doc(1.0, description="multiplies the automatic step; above 1 goes past the limits")
+    scale: Annotated[float, Quantity("", "time scale", least=1)] = doc(1.0, description="time scaling: rates are multiplied, eta divided by it")
 
 
 class Apic(Kind):

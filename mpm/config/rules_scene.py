@@ -171,6 +171,14 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
                 yield Finding((key,), f"no body is elastic, so {key} would do nothing", "an elastic section in the material of a body", on_key=True)
 
 
+def scaling(experiment: Any) -> Iterator[Finding]:
+    """Time scaling trades inertia for speed: without inertia there is nothing to trade, and an exact solution has its own clock."""
+    if experiment.time.scale != 1 and (experiment.grid.dimension == 0 or not moves(experiment)):
+        yield Finding(("time", "scale"), "nothing here has inertia, so time scaling would do nothing", "no scale", on_key=True)
+    elif experiment.time.scale != 1 and experiment.exact is not None:
+        yield Finding(("time", "scale"), "an exact solution is not scaled in time", "no scale, or no exact", on_key=True)
+
+
 def gravity(experiment: Any) -> Iterator[Finding]:
     yield from vector(experiment, ("gravity",), experiment.gravity, "gravity")
 

@@ -72,6 +72,8 @@ TABLE = [
     ("error", "", "1", POINT, "why the point is not ok"),
     ("outcome", "", "1", POINT, "how the run ended"),
     ("run_id", "", "1", POINT, "hash of the point's config"),
+    ("scaling_froude", "Fr", "1", POINT, "time scaling: largest (S v)^2/(g H), to be at most 0.02"),
+    ("scaling_kinetic", "", "1", POINT, "time scaling: largest kinetic energy over the work done, to be at most 0.05"),
     ("steps", "", "1", POINT, "time steps taken"),
     ("wall_time", "", "s", POINT, "wall time of the run"),
     ("attempts", "", "1", POINT, "times the point was started"),

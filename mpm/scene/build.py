@@ -14,6 +14,7 @@ from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky,
 from mpm.observe import Watch
 from mpm.scene.exchange import exchanging_surface
 from mpm.scene.refusal import SceneError
+from mpm.scene.scaling import hurried
 from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
@@ -188,6 +189,7 @@ def build(experiment, exact=None) -> Scene:
     rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
     if rigid:
         raise SceneError(f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
+    scale, experiment = experiment.time.scale, hurried(experiment)
     space = grid_space(experiment)
     zero = next(iter(experiment.bodies.values())).temperature
     scheme, blend, affine, sharp = schemes(experiment)
@@ -215,6 +217,7 @@ def build(experiment, exact=None) -> Scene:
         safety=experiment.time.safety,
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=HeatMethod(type(heat).kind, getattr(heat, "order", 1), getattr(heat, "tolerance", 1e-9)),
+        scale=scale,
         watch=watch(experiment, times, exact),
     )
 

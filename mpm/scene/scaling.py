@@ -1,0 +1,130 @@
+"""Slow scenes on a fast clock: time scaling (physics.md 10).
+
+With S = time.scale, kappa, beta and every other rate are multiplied by S and eta is divided by it; density, gravity, moduli, M and p0 stay; the run
+ends at end/S. Heat and viscous flow then go through the same states S times sooner, and only inertia differs. What leaves the run is physical again:
+times, and velocities (hence momentum and kinetic energy) divided by S.
+
+Valid while inertia is small, which the run itself measures at its output times, with its own speeds:
+froude    largest (S v)^2/(g H), v the fastest particle, H the extent along gravity                    at most 0.02
+kinetic   largest kinetic energy over the work done: kinetic, elastic and dissipated energy together   at most 0.05
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mpm.state import Run
+
+FROUDE, KINETIC = 0.02, 0.05
+VALUES = {"constant": ("value",), "table": ("value",), "bump": ("base", "heat"), "logistic": ("low", "high")}  # fields of a law of temperature
+MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
+
+
+def times(value, factor: float):
+    """A number, text (`auto`), nothing, or a tuple of them, by `factor`."""
+    if isinstance(value, tuple):
+        return tuple(times(one, factor) for one in value)
+    return value if value is None or isinstance(value, str) else value * factor
+
+
+def changed(model, factor: float, *names: str):
+    """The model with the fields `names` multiplied; nothing of it is validated again, so that a rate may pass its physical bounds."""
+    return None if model is None else model.model_copy(update={name: times(getattr(model, name), factor) for name in names})
+
+
+def law_times(law, factor: float):
+    """A law of temperature whose values are multiplied."""
+    return changed(law, factor, *VALUES[type(law).kind])
+
+
+def sooner(programme, S: float):
+    """A temperature over time on the fast clock."""
+    return programme if isinstance(programme, float | int) else changed(programme, 1 / S, *MOMENTS[type(programme).kind])
+
+
+def exchange(model, S: float, rate: str, temperature: str | None):
+    """One exchange of a surface or a wall: its rate, and its temperature over time."""
+    if model is None:
+        return None
+    model = changed(model, S, rate) if rate else model
+    return model.model_copy(update={temperature: sooner(getattr(model, temperature), S)}) if temperature else model
+
+
+def material(model, S: float):
+    heat, flow = model.heat, model.flow
+    if heat is not None:
+        heat = heat.model_copy(update={"kappa": law_times(heat.kappa, S)})
+    if flow is not None:
+        flow = flow.model_copy(update={"eta": law_times(flow.eta, 1 / S)})
+    return model.model_copy(update={"heat": heat, "flow": flow})
+
+
+def surface(model, S: float):
+    return model.model_copy(
+        update={
+            "convection": exchange(model.convection, S, "beta", "outside"),
+            "flux": exchange(model.flux, S, "q", None),
+            "fixed": exchange(model.fixed, S, "", "temperature"),
+            "radiation": exchange(model.radiation, S, "emissivity", "surroundings"),
+        }
+    )
+
+
+def hurried(experiment):
+    """The experiment on the fast clock; itself where `time.scale` is 1."""
+    S = experiment.time.scale
+    if S == 1:
+        return experiment
+    output = changed(experiment.output, 1 / S, "every")
+    return experiment.model_copy(
+        update={
+            "bodies": {name: changed(body, S, "velocity", "angular_velocity") for name, body in experiment.bodies.items()},
+            "materials": {name: material(one, S) for name, one in experiment.materials.items()},
+            "surfaces": tuple(surface(one, S) for one in experiment.surfaces),
+            "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S, "beta", "temperature")}) for side, wall in experiment.walls.items()},
+            "time": changed(experiment.time, 1 / S, "end", "step").model_copy(update={"scale": 1.0}),
+            "method": changed(experiment.method, 1 / S, "heat_step"),
+            "output": output.model_copy(update={"snapshots": changed(output.snapshots, 1 / S, "every")}),
+        }
+    )
+
+
+def validity(run: Run, gravity) -> dict[str, float]:
+    """froude (where there is gravity) and kinetic of a run on the fast clock."""
+    series, found = run.series, {}
+    if gravity is not None and any(gravity):
+        axis = int(np.argmax(np.abs(gravity)))
+        extent = [values for name, values in series.items() if name.startswith("extent_")][axis]
+        found["froude"] = float(np.max(series["velocity_max"] ** 2 / (np.linalg.norm(gravity) * extent)))
+    kinetic = series["energy_kinetic"]
+    work = float(np.max(kinetic + series["energy_elastic"] + series["dissipation_total"]))
+    return found | {"kinetic": float(np.max(kinetic)) / work if work > 0 else 0.0}
+
+
+def physical(run: Run, experiment) -> Run:
+    """The run in physical times and velocities, with the measure of what the scaling did; as it is where `time.scale` is 1."""
+    S = experiment.time.scale
+    if S == 1:
+        return run
+    found = validity(run, experiment.gravity)
+    run.times, run.snapshot_times = run.times * S, run.snapshot_times * S
+    kinetic = run.series["energy_kinetic"]
+    run.series["energy_total"] = run.series["energy_total"] - kinetic + kinetic / S**2
+    run.series["energy_kinetic"] = kinetic / S**2
+    for name in run.series:
+        if name.startswith(("velocity_", "momentum_")):
+            run.series[name] = run.series[name] / S
+    run.finals |= {name: float(values[-1]) for name, values in run.series.items()}
+    run.finals |= {name: value * S for name, value in run.finals.items() if name.startswith("time_to_")}
+    run.finals |= {f"scaling_{name}": value for name, value in found.items()}
+    for fields in (run.grid, *run.particles):
+        for name in fields:
+            if name.startswith("velocity"):
+                fields[name] = fields[name] / S
+    past = [f"{what} {found[key]:.2g} above {most:g}" for key, what, most in (("froude", "Froude number", FROUDE), ("kinetic", "kinetic share", KINETIC))
+            if found.get(key, 0.0) > most]  # fmt: skip
+    run.facts["time_scaling"] = {"scale": S, **found, "valid": not past}
+    if past and run.outcome.ok:
+        said = f"time scaling by {S:g} lets inertia in: {', '.join(past)}"
+        run.outcome = replace(run.outcome, message=said, advice="lower `time.scale`")
+    return run
