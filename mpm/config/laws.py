@@ -86,7 +86,8 @@ class Law(Menu):
     def __init__(self, quantity: Quantity):
         value = Annotated[float, quantity]
         # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
-        area = Annotated[float, Quantity(f"{quantity.unit}*K" if quantity.unit else "K", f"{quantity.name} times kelvin", least=0, difference=True)]
+        integral = quantity.unit.removesuffix("/K") if quantity.unit.endswith("/K") else f"{quantity.unit}*K" if quantity.unit else "K"
+        area = Annotated[float, Quantity(integral, f"{quantity.name} times kelvin", least=0, difference=True)]
         self.constant = of_unit(Constant, quantity, value=(value, ...))
         table = of_unit(Table, quantity, value=(tuple[value, ...], ...))
         bump = of_unit(Bump, quantity, base=(value, ...), heat=(area, ...))

@@ -50,7 +50,7 @@ def fixed(plan: Any, swept: list[str], taken: set[str]) -> dict[str, Array]:
     found = {}
     for name, (number, slot) in rows.items():
         word = name.rsplit(".", 1)[-1]
-        attrs = {"units": slot.quantity.unit.replace("**", "") or "1", "long_name": slot.description or slot.quantity.name, "config_path": name}
+        attrs = {"units": slot.quantity.units, "long_name": slot.description or slot.quantity.name, "config_path": name}
         found[word if words[word] == 1 and word not in blocked else name] = Array((), number, attrs)
     return found
 
