@@ -154,6 +154,17 @@ class Heating(NamedTuple):
     fraction: float  # chi_d, zero where dissipation heating is not named [-]
 
 
+class NoAverage(NamedTuple):
+    """Each particle keeps its own change of volume."""
+
+
+class Average(NamedTuple):
+    """Changes of volume averaged over the grid (integrate/locking.py): scratch of one step."""
+
+    change: np.ndarray  # (n,) volume change of a step [-]
+    volume: np.ndarray  # (n,) [m^D]
+
+
 class Body(NamedTuple):
     """One body: a contiguous set of particles with one law each."""
 
@@ -164,6 +175,7 @@ class Body(NamedTuple):
     flow: Any
     expansion: Any
     heating: Any
+    locking: Any = NoAverage()  # or Average
 
 
 @dataclass

@@ -66,6 +66,12 @@ class Xpic(Kind):
     order: Annotated[int, Whole("order", 1, 16)] = doc(2, description="order; 1 is PIC, each further one costs a transfer to the grid and back")
 
 
+class Fbar(Kind):
+    """Volume changes averaged over the grid, against volumetric locking."""
+
+    kind: ClassVar[str] = "fbar"
+
+
 class AutoHeat(Kind):
     """Whichever of the integrators suits the laws."""
 
@@ -108,6 +114,7 @@ class AutoMoving(Kind):
 
 HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
+LOCKING: tuple[type[Kind], ...] = (Fbar,)
 RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
 Transfer = one_of("transfer", *TRANSFERS)
 
@@ -118,6 +125,7 @@ class Method(Model):
     transfer: Transfer = doc(Apic(), description="transfer of velocity between particles and grid")
     temperature: Transfer = doc(Apic(), description="transfer of temperature")
     gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
+    locking: one_of("cure of locking", *LOCKING) | None = doc(None, description="for nearly incompressible bodies that move")
     precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")

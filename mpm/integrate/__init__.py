@@ -4,6 +4,8 @@ respond.py    a particle's answer to the velocity gradient: strain, flow, stress
 heat_step.py  one explicit heat step: scatter, conduct, exchange, gather
 heat_implicit.py  the same by conjugate gradients: any step, any beta
 pieces.py     surface pieces during a heat step
+sharpen.py    XPIC's extra transfers
+locking.py    F-bar: changes of volume averaged over the grid
 explicit.py   the mechanical step as the algorithm box of physics.md 4
 timestep.py   every explicit limit, and which one binds
 """

@@ -2,7 +2,7 @@
 
 open      particles -> nodes
 each step nodes: v = p/m + dt g, walls (XPIC: its extra transfers)
-          each chunk: gather v, L -> carry (APIC, FLIP, XPIC) -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
+          each chunk: gather v, L -> carry (APIC, FLIP, XPIC) -> F-bar -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
           clear these nodes, swap
 A chunk of particles stays in the first-level cache from gather to scatter.
 """
@@ -13,6 +13,7 @@ from numba import literal_unroll
 from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
+from mpm.integrate.locking import average_all, relax
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
 from mpm.integrate.sharpen import sharpen
 from mpm.jit import kernel
@@ -39,6 +40,7 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
         now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
         sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
+        average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
             return
@@ -89,6 +91,7 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
         count = min(CHUNK, x.shape[0] - first)
         collect(scheme, space, gradient, x, first, chunk, count, nodes[now], force[now], change)
         carry(scheme, body.particles, first, chunk, count, change)
+        relax(body.locking, space, x, first, chunk, count, dt)
         move(space, x, chunk, first, count, dt, report)
         if report[CODE] == 0.0:
             respond(space, gradient, body, chunk, first, count, dt, dt, report)

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from mpm.basis import BASES
-from mpm.boundary import KINDS
+from mpm.boundary import KINDS, extents
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
 from mpm.observe import Watch
 from mpm.scene.exchange import exchanging_surface
@@ -19,6 +19,7 @@ from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
     PAD,
+    Average,
     Axisymmetric,
     Body,
     Expansion,
@@ -199,6 +200,8 @@ def build(experiment, exact=None) -> Scene:
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)
+    if experiment.method.locking is not None:
+        bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
     heat = experiment.method.heat
     return Scene(
         space=space,
