@@ -78,6 +78,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (output.exact, once),
     (point.grid, once),
     (point.body, each("bodies")),
+    (point.alone, once),
     (point.loading, once),
     (point.stages, once),
     (point.output, once),

@@ -40,5 +40,40 @@ class RobinCylinder(Kind):
     body: str | None = doc(None, description="the body that is the cylinder; the only one unless given")
 
 
-EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder)
+class Adiabatic(Kind):
+    """Adiabatic heating of a thermoelastic material point."""
+
+    kind: ClassVar[str] = "adiabatic"
+    body: str | None = doc(None, description="the material point; the only body unless given")
+
+
+class ThermalExpansion(Kind):
+    """Thermal expansion of a material point, each direction free or held."""
+
+    kind: ClassVar[str] = "thermal_expansion"
+    body: str | None = doc(None, description="the material point; the only body unless given")
+
+
+class Relaxation(Kind):
+    """Stress relaxation of a viscoplastic material point at held strain."""
+
+    kind: ClassVar[str] = "relaxation"
+    body: str | None = doc(None, description="the material point; the only body unless given")
+
+
+class ShearHeating(Kind):
+    """Heating of a material point by isochoric flow."""
+
+    kind: ClassVar[str] = "shear_heating"
+    body: str | None = doc(None, description="the material point; the only body unless given")
+
+
+class LumpedCooling(Kind):
+    """Exponential cooling of a rigid material point."""
+
+    kind: ClassVar[str] = "lumped_cooling"
+    body: str | None = doc(None, description="the material point; the only body unless given")
+
+
+EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder, Adiabatic, ThermalExpansion, Relaxation, ShearHeating, LumpedCooling)
 Exact = one_of("exact solution", *EXACT)

@@ -76,7 +76,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
     family = name.split(".", maxsplit=1)[0]
     if family in ("temperature", "heat", "time_to") and not hot:
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
-    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain") and not moving:
+    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain", "stress", "kirchhoff") and not moving:
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)
 
 

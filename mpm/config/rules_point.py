@@ -45,8 +45,6 @@ def loading(experiment: Any) -> Iterator[Finding]:
         if stages:
             yield Finding(("loading",), "loading is for a material point", "grid: {dimension: 0}", on_key=True)
         return
-    if len(experiment.bodies) > 1:
-        yield Finding(("bodies",), f"a material point is one body, found {len(experiment.bodies)}", "one body", on_key=True)
     if not stages and moves(experiment):
         yield lacks(("loading",), "[{until: time, strain_rate: {zz: ...}, stress: {xx: 0, yy: 0}}, ...]")
     elif not stages and not experiment.surfaces:
@@ -57,6 +55,12 @@ def loading(experiment: Any) -> Iterator[Finding]:
                 yield Finding(("loading", index, key), "the body is rigid", "an elastic section in its material", on_key=True)
         if stage.temperature is not None and not heats(experiment):
             yield Finding(("loading", index, "temperature"), "the body has no heat", "a heat section in its material", on_key=True)
+
+
+def alone(experiment: Any) -> Iterator[Finding]:
+    """A material point has no neighbours."""
+    if experiment.grid.dimension == 0 and len(experiment.bodies) > 1:
+        yield Finding(("bodies",), f"a material point is one body, found {len(experiment.bodies)}", "one body", on_key=True)
 
 
 def stages(experiment: Any) -> Iterator[Finding]:

@@ -276,12 +276,19 @@ def at_path(data: Any, path: Path) -> Any:
 
 
 def label(value: Any) -> str:
-    """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`."""
+    """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`, entries as `xx=0, yy=0`; what is absent is left out."""
     if isinstance(value, dict):
-        return ", ".join(f"{key}({entries(inner)})" if inner else str(key) for key, inner in value.items())
+        return ", ".join(entry(key, inner) for key, inner in value.items() if inner is not None) or "none"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(label, value)) + "]"
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def entry(key: Any, inner: Any) -> str:
+    """A key of a mapping with what lies under it."""
+    if inner == {}:
+        return str(key)
+    return f"{key}({entries(inner)})" if isinstance(inner, dict) else f"{key}={label(inner)}"
 
 
 def entries(inner: Any) -> str:

@@ -27,6 +27,11 @@ def _(law, e1, e2, e3):
     return 0.0
 
 
+@moduli.register(Rigid)
+def _(law):
+    return math.inf, math.inf
+
+
 @role
 def put(thermal, theta):
     """Set the temperature of the point [K]."""
@@ -225,8 +230,10 @@ def equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
                 for i in range(3):
                     if kind[i] == STRESS:
                         A[i, k] = (near[i] - r[i]) / actual
-        if not solve3(A, r, x):
-            return False
+        for k in range(3):
+            near[k] = r[k]
+        if not solve3(A, r, x) or not x[0] * near[0] + x[1] * near[1] + x[2] * near[2] > 0.0:
+            return False  # more load would strain it backwards: past a limit load there are roots that no loading reaches
         share, better = 1.0, False
         for _ in range(40):
             for k in range(3):

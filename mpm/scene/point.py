@@ -166,14 +166,23 @@ def laws(experiment) -> Matter:
 
 def lumped(experiment, name: str, body):
     """All exchanges of the point as one."""
-    pairs = [(s.convection.beta, s.convection.outside) for s in experiment.surfaces if s.of == name and s.convection is not None and s.convection.beta > 0]
+    pairs = [pair for surface in experiment.surfaces if surface.of == name for pair in exchanges(surface) if pair[0] > 0]
     if not pairs:
         return NoExchange()
     total = sum(beta for beta, _ in pairs)
     if math.isinf(total) and len(pairs) > 1:
-        raise SceneError("beta = inf fixes the temperature of a material point: it must be its only exchange")
+        raise SceneError("a fixed temperature, or beta = inf, must be the only exchange of a material point")
     outside = pairs[0][1] if len(pairs) == 1 else sum(beta * out for beta, out in pairs) / total
     return Lumped(total * body.shape.surface_to_volume, outside)
+
+
+def exchanges(surface) -> list[tuple[float, float]]:
+    """(beta, temperature outside) of a surface."""
+    found = [(surface.convection.beta, surface.convection.outside)] if surface.convection is not None else []
+    found += [(math.inf, surface.fixed.temperature)] if surface.fixed is not None else []
+    if surface.flux is not None or surface.radiation is not None or not all(isinstance(out, float) for _, out in found):
+        raise SceneError("a material point exchanges by convection or a fixed temperature, constant in time: prescribe its temperature in `loading` instead")
+    return found
 
 
 def estimate(experiment) -> dict:

@@ -1,11 +1,20 @@
-"""Problems with exact solutions: a file each. `exact(experiment) -> theta(x (N, D), t)` of the scene that a config sets up.
+"""Problems with exact solutions: a file each. `exact(experiment) -> theta(x (N, D), t)` of the scene that a config sets up;
+for a material point (grid.dimension 0) `exact(experiment) -> solution(times) -> {series: values}`.
 
 To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
 """
 
-from mpm.verification import robin_cylinder, robin_slab
+from mpm.verification import adiabatic, lumped_cooling, relaxation, robin_cylinder, robin_slab, shear_heating, thermal_expansion
 
-EXACT = {"robin_slab": robin_slab.exact, "robin_cylinder": robin_cylinder.exact}
+EXACT = {
+    "robin_slab": robin_slab.exact,
+    "robin_cylinder": robin_cylinder.exact,
+    "adiabatic": adiabatic.exact,
+    "thermal_expansion": thermal_expansion.exact,
+    "relaxation": relaxation.exact,
+    "shear_heating": shear_heating.exact,
+    "lumped_cooling": lumped_cooling.exact,
+}
 
 
 def exact_solution(experiment):
