@@ -79,7 +79,7 @@ def crossing(method, watch, before, t, dt, probe, level):
 
 
 def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) -> Trace:
-    """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked."""
+    """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked; where no such step can be taken, a shorter one is."""
     trace, t = Trace(crossings=[math.nan] * len(watch.thresholds)), 0.0
     state = method.state
     ahead = np.asarray(watch.times, dtype=float)
@@ -100,10 +100,10 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
             error = 0.0 if math.isfinite(error) else error
         if not (error <= 1.0 or (math.isfinite(error) and dt <= method.floor)):
             trace.rejected += 1
-            factor = max(SHRINK, SAFETY * error ** (-1 / method.power)) if math.isfinite(error) else SHRINK
-            count = math.ceil((end - t) / max(dt * factor, min(method.floor, 0.9 * dt)))
+            factor = max(SHRINK, SAFETY * error ** (-1 / method.power)) if math.isfinite(error) else 0.5 if fixed else SHRINK
+            count = math.ceil((end - t) / max(dt * factor, 0.0 if fixed else min(method.floor, 0.9 * dt)))
             dt = (end - t) / count
-            if dt < FEWEST * end or fixed:
+            if dt < FEWEST * end:
                 trace.code = STEP_UNDERFLOW if math.isfinite(error) else NON_FINITE
                 break
             continue
@@ -130,6 +130,9 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
         if watch.stop is not None and watch.stop(t / end, t):
             trace.code = BUDGET if count else COMPLETED
             break
+        if count and fixed and dt < fixed * (1 - 1e-9):  # back to the size that was asked for
+            count = max(1, math.ceil((end - t) / min(2 * dt, fixed) * (1 - 1e-9)))
+            dt = (end - t) / count
         if count and not fixed:
             factor = min(GROW, SAFETY * max(error, 1e-9) ** (-1 / method.power))
             wanted = min(max(dt * factor, min(method.floor, dt)), method.longest)

@@ -19,6 +19,7 @@ from mpm.rigid.nodes import apply
 from mpm.rigid.tables import Table, enthalpies, make_table, temperatures
 
 ROUNDOFF = 1e-10  # of the heat that moves
+CANCELLED = 1e-14  # of the terms that nearly cancel behind a stiff surface whose temperature changes
 
 
 class Lumped(NamedTuple):
@@ -81,14 +82,17 @@ def rate(problem, around, h, out, theta, work):
     else:
         apply(problem.on_theta, problem.diff, theta, work)
     taken, total, size = around.received + radiate(problem.radiant, around.sky, theta, work), 0.0, 0.0
+    scale = abs(around.received)
     for i in range(len(h)):
         net = around.supply[i] - work[i]
         total += net
         size += abs(net)
         out[i] = net / problem.mass[i]
-        taken -= problem.facing[i] * theta[i]
+        passed = problem.facing[i] * theta[i]
+        taken -= passed
+        scale += abs(passed)
     gap = taken - total
-    if abs(gap) <= ROUNDOFF * size:  # more would be an error, and the ledger has to show it
+    if abs(gap) <= ROUNDOFF * size + CANCELLED * scale:  # more would be an error, and the ledger has to show it
         gap /= np.sum(problem.weight)
         for i in range(len(h)):
             if problem.weight[i] > 0.0:

@@ -202,6 +202,8 @@ def build(experiment, exact=None) -> Scene:
             around.write(space, body, 0.0, 0.0)
     if experiment.method.locking is not None:
         bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
+    if getattr(exact, "starts", False):
+        begin(bodies, exact, zero, space.h)
     heat = experiment.method.heat
     return Scene(
         space=space,
@@ -223,6 +225,17 @@ def build(experiment, exact=None) -> Scene:
         scale=scale,
         watch=watch(experiment, times, exact),
     )
+
+
+def begin(bodies, exact, zero: float, h: float) -> None:
+    """Temperatures and their gradients at the start from exact(x, 0); the gradient by central differences over h/1000."""
+    for body in bodies:
+        x, D = body.particles.x.astype(float), body.particles.x.shape[1]
+        body.thermal.theta[:] = exact(x, 0.0) - zero
+        for k in range(D):
+            step = np.zeros(D)
+            step[k] = 1e-3 * h
+            body.thermal.c[:, k] = (exact(x + step, 0.0) - exact(x - step, 0.0)) / (2e-3 * h)
 
 
 def watch(experiment, times: np.ndarray, exact=None) -> Watch:

@@ -4,7 +4,19 @@ for a material point (grid.dimension 0) `exact(experiment) -> solution(times) ->
 To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
 """
 
-from mpm.verification import adiabatic, lumped_cooling, relaxation, robin_cylinder, robin_slab, shear_heating, thermal_expansion
+from mpm.verification import (
+    adiabatic,
+    gaussian_box,
+    lumped_cooling,
+    nafems_t3,
+    nafems_t4,
+    relaxation,
+    robin_cylinder,
+    robin_slab,
+    shear_heating,
+    stefan,
+    thermal_expansion,
+)
 
 EXACT = {
     "robin_slab": robin_slab.exact,
@@ -14,6 +26,10 @@ EXACT = {
     "relaxation": relaxation.exact,
     "shear_heating": shear_heating.exact,
     "lumped_cooling": lumped_cooling.exact,
+    "nafems_t3": nafems_t3.exact,
+    "nafems_t4": nafems_t4.exact,
+    "gaussian_box": gaussian_box.exact,
+    "stefan": stefan.exact,
 }
 
 
