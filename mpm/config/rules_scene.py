@@ -162,6 +162,9 @@ def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     sides = WALL_SIDES[experiment.grid.dimension]
     if side not in sides:
         yield Finding(("walls", side), f"there is no such wall in dimension {experiment.grid.dimension}", list(sides), near(side, sides), on_key=True)
+    elif item.heat is not None and not heats(experiment):
+        said = "no body has heat, so nothing can be exchanged"
+        yield Finding(("walls", side, item.kind, "heat"), said, "a heat section in the material of a body", on_key=True)
 
 
 def mechanics(experiment: Any) -> Iterator[Finding]:

@@ -2,6 +2,8 @@
 
 import math
 
+from mpm.config.boundary import EXCHANGES
+
 
 def physics(experiment) -> dict[str, list[str]]:
     """What is compiled for this config, and what is absent."""
@@ -13,7 +15,8 @@ def physics(experiment) -> dict[str, list[str]]:
                 present.add(f"{part}: {type(law).kind}")
         if material.heating is not None:
             present |= {f"heating: {part}" for part in ("elastic", "dissipation") if getattr(material.heating, part) is not None}
-    present |= {"exchange: convection"} if any(s.convection is not None for s in experiment.surfaces) else set()
+    present |= {f"exchange: {kind}" for kind in EXCHANGES for entry in experiment.surfaces if getattr(entry, kind) is not None}
+    present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
     present |= {"gravity"} if experiment.gravity is not None else set()
     said = {text.split(":")[0] for text in present}
     parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "gravity")
