@@ -1,6 +1,7 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
-run_point(experiment, beat) -> Run      warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
+run_point(experiment, beat) -> Run      run_points(experiments) -> list of Runs, for material points
+warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
@@ -31,6 +32,20 @@ def run_point(experiment, beat=None) -> Run:
         from mpm.scene.rigid import run_rigid
 
         run = run_rigid(experiment, exact, beat)
+    return told(experiment, run)
+
+
+def run_points(experiments) -> list[Run]:
+    """Run many material points (grid.dimension 0): the Runs that `run_point` gives one by one, from one compiled call for each kind of point."""
+    from mpm.scene.point import batch
+    from mpm.verification import exact_solution
+
+    runs = batch(experiments, [exact_solution(experiment) for experiment in experiments])
+    return [told(experiment, run) for experiment, run in zip(experiments, runs, strict=True)]
+
+
+def told(experiment, run: Run) -> Run:
+    """The run, with its physics and how far it is from what was measured."""
     run.facts["physics"] = physics(experiment)
     run.finals |= misfits(experiment, run)
     return run
@@ -68,4 +83,4 @@ def warm(experiment) -> None:
     run_point(load(short))
 
 
-__all__ = ["estimate", "run_point", "warm"]
+__all__ = ["estimate", "run_point", "run_points", "warm"]

@@ -81,5 +81,6 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.alone, once),
     (point.loading, once),
     (point.stages, once),
+    (point.clock, once),
     (point.output, once),
 ]

@@ -78,6 +78,12 @@ def stages(experiment: Any) -> Iterator[Finding]:
             yield Finding(("loading", index, "until"), f"the last stage ends before time.end = {end:g} s", "time.end or later, or no until", given=stage.until)
 
 
+def clock(experiment: Any) -> Iterator[Finding]:
+    """Nothing to scale without inertia."""
+    if experiment.grid.dimension == 0 and experiment.time.scale != 1:
+        yield Finding(("time", "scale"), "a material point has no inertia, so no time to scale", "1", given=experiment.time.scale)
+
+
 def output(experiment: Any) -> Iterator[Finding]:
     """One point has no fields."""
     if experiment.grid.dimension == 0 and experiment.output.snapshots is not None:

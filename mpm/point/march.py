@@ -52,7 +52,7 @@ def advance(matter, program, progress, out, rows):
         )
         if progress.row[i] < 0:
             progress.zero[i] = content(one.thermal)
-            enter(one, progress, i, 0, 0.0)
+            enter(one, progress, i, progress.stage[i], 0.0)
             record(one, progress, i, out[program.first[i]])
             progress.row[i] = 0
         last = min(program.first[i + 1] - program.first[i] - 1, progress.row[i] + rows)
@@ -120,7 +120,7 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
             elif kind[k] == NOMINAL:
                 stretch = math.exp(entered[1 + k]) + value[k] * (after - entered[0])
                 if not stretch > 0.0:
-                    fail(progress, i, INVERTED, start + dt * n)
+                    progress.code[i], progress.time[i] = INVERTED, start + dt * n
                     return
                 d[k] = math.log(stretch) - one.strain[k]
         before = temperature(one.thermal, 0)
@@ -134,7 +134,7 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
         lost, heated, ok = step(one, one.elastic_strain, one.strain, d, kind, value, base, held, dt, work)
         progress.steps[i] += 1
         if not ok:
-            fail(progress, i, NO_EQUILIBRIUM, after)
+            progress.code[i], progress.time[i] = NO_EQUILIBRIUM, after
             return
         if held:
             gained = one.density * (content(one.thermal) - total_before) - heated
@@ -147,17 +147,12 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
         cross(program, progress, i, before, theta, after - dt, dt)
         swell = one.strain[0] + one.strain[1] + one.strain[2]
         if not math.isfinite(swell) or not math.isfinite(theta):
-            fail(progress, i, NON_FINITE, after)
+            progress.code[i], progress.time[i] = NON_FINITE, after
             return
         if not abs(swell) < LONGEST:
-            fail(progress, i, OVERSTRETCHED, after)
+            progress.code[i], progress.time[i] = OVERSTRETCHED, after
             return
     progress.time[i] = end
-
-
-@kernel(inline=True)
-def fail(progress, i, code, time):
-    progress.code[i], progress.time[i] = code, time
 
 
 @kernel(inline=True)

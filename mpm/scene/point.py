@@ -45,11 +45,12 @@ def run_zero(experiment, exact=None, beat=None) -> Run:
     return together([spot(experiment, exact)], beat)[0]
 
 
-def batch(experiments) -> list[Run]:
-    """Runs of many material points: those with the same kinds of laws and numbers of stages in one compiled call, whatever their values."""
-    from mpm.verification import exact_solution
+def batch(experiments, exacts=None) -> list[Run]:
+    """Runs of many material points: those with the same kinds of laws and numbers of stages in one compiled call, whatever their values.
 
-    spots = [spot(experiment, exact_solution(experiment)) for experiment in experiments]
+    exacts   for each, its exact solution or None; see `run_zero`
+    """
+    spots = [spot(experiment, exact) for experiment, exact in zip(experiments, exacts or [None] * len(experiments), strict=True)]
     groups: dict[tuple, list[int]] = {}
     for index, one in enumerate(spots):
         groups.setdefault(one.key(), []).append(index)

@@ -42,6 +42,7 @@ def test_rates_and_whole_stages_sweep():
         ({"materials.solid.elastic": None, "loading": [], "materials.solid.heat": {"fourier": {"kappa": 1, "alpha": 1}}}, "nothing happens"),
         ({"loading.1.until": 90}, "ends before time.end"),
         ({"loading.0.temperature": 400}, "has no heat"),
+        ({"time.scale": 100}, "no inertia"),
         ({"bodies.other": {"shape": "point", "material": "solid"}}, "one body"),
     ],
 )

@@ -39,6 +39,15 @@ def test_batch_equals_single_bitwise(mixed):
     assert len({run.outcome.kind for run in batch(mixed)}) == 2
 
 
+def test_points_of_a_sweep_are_the_runs_of_one_point(mixed):
+    """What the runner adds to a Run is the same, too."""
+    from mpm.runner import run_point, run_points
+
+    for one, run in zip(map(run_point, mixed[:2]), run_points(mixed[:2]), strict=True):
+        same(one, run)
+        assert one.facts == run.facts and "flow: ellipse" in one.facts["physics"]["compiled"]
+
+
 def test_a_run_cut_at_output_times_has_the_same_bits(mixed):
     told = []
     same(run_zero(mixed[1]), run_zero(mixed[1], beat=lambda fraction, time: bool(told.append((fraction, time)))))

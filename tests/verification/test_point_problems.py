@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.scene.point import batch, run_zero
+from mpm.runner import run_point, run_points
 from mpm.verification import exact_solution, relaxation, rheometer
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +32,7 @@ def order(errors):
 def test_adiabat_in_any_step(step):
     table = rows("adiabatic.csv")
     many = [problem("adiabatic", **{"gamma": row["Gamma=c*lambda/(R0*alpha)"], "loading.0.stretch_rate.zz": row["J"] - 1, "time.step": step}) for row in table]
-    for row, run in zip(table, batch(many), strict=True):
+    for row, run in zip(table, run_points(many), strict=True):
         assert run.finals["temperature_mean"] / 300 == pytest.approx(row["theta/theta0"], rel=1e-12)
         assert run.finals["J_min"] == pytest.approx(row["J"], rel=1e-14)
 
@@ -41,7 +41,7 @@ def test_thermal_expansion_table():
     for row in rows("thermal_expansion.csv"):
         changes = {"lam": row["lambda"], "materials.solid.elastic.hencky.mu": row["mu"], "gamma": row["c_lambda"], "loading.0.temperature": 300 + row["dTheta"]}
         stresses = [{"xx": 0, "yy": 0, "zz": 0}, {}, {"xx": 0, "yy": 0}, {"xx": 0}]
-        free, clamped, plane, line = batch([problem("thermal_expansion", **changes, **{"loading.0.stress": stress}) for stress in stresses])
+        free, clamped, plane, line = run_points([problem("thermal_expansion", **changes, **{"loading.0.stress": stress}) for stress in stresses])
         stretch = lambda run: math.exp(run.finals["strain_xx"])  # noqa: E731
         tau = lambda run, axis: run.finals[f"stress_{axis}"] * run.finals["J_min"]  # noqa: E731
         assert stretch(free) == pytest.approx(row["free3D_stretch"], rel=1e-12)
@@ -68,7 +68,7 @@ def test_relaxation_table_at_order_one(model):
             changes |= {"map": "clipped" if model == "E1" else "radial", "time": {"end": 5, "step": step}, "output.every": 0.05}
             many.append(problem("relaxation", **changes))
         error = 0.0
-        for (p0, p, q), run in zip(starts, batch(many), strict=True):
+        for (p0, p, q), run in zip(starts, run_points(many), strict=True):
             assert run.series["kirchhoff_q"][0] == pytest.approx(q, rel=1e-14)
             for row in table:
                 if (row["p0"], row["p_init/M"], row["q_init/M"]) == (p0, p, q):
@@ -102,7 +102,7 @@ def test_relaxation_solution_is_the_table():
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_configs_report_their_error(name):
     experiment = problem(name)
-    runs = batch([case.experiment for case in mpm.plan(experiment).cases])
+    runs = run_points([case.experiment for case in mpm.plan(experiment).cases])
     assert all(run.outcome.ok for run in runs)
     most = 0.1 if name == "relaxation" else 1e-12
     assert max(run.series["error_relative"].max() for run in runs) < most
@@ -111,13 +111,13 @@ def test_configs_report_their_error(name):
 
 
 def test_shear_heating_by_hand():
-    run = run_zero(problem("shear_heating"))
+    run = run_point(problem("shear_heating"))
     equivalent = math.sqrt(2 / 3 * (0.4**2 + 0.1**2 + 0.3**2))
     assert run.finals["temperature_mean"] - 300 == pytest.approx(2e4 * (equivalent - 2e4 / (3 * 1e6 / 2.6)) / 1e5, rel=1e-9)
 
 
 def test_lumped_time_to_a_temperature():
-    run = run_zero(problem("lumped_cooling", **{"time.step": 0.1}))
+    run = run_point(problem("lumped_cooling", **{"time.step": 0.1}))
     assert run.finals["time_to_cube_60_degC"] == pytest.approx(math.log(2) * 8500 * 380 / (20 * 1200), rel=1e-6)
     assert np.array_equal(run.series["temperature_cube"], run.series["temperature_mean"])
 
@@ -131,7 +131,7 @@ def test_lumped_body_with_latent_heat_is_of_order_two_and_keeps_its_heat():
     errors = []
     for step in (10, 5, 2.5):
         made = problem("lumped_cooling", **{"alpha": alpha, "time.step": step})
-        run = run_zero(mpm.load({**made.resolved(), "exact": None}))
+        run = run_point(mpm.load({**made.resolved(), "exact": None}))
         errors.append(abs(run.finals["temperature_mean"] - right))
         assert np.abs(run.series["heat_ledger"]).max() < 1e-12 * np.abs(run.series["heat_exchanged"]).max()
     assert order(errors) > 1.8
@@ -139,15 +139,15 @@ def test_lumped_body_with_latent_heat_is_of_order_two_and_keeps_its_heat():
 
 def test_a_scene_that_is_not_the_problem_is_refused():
     with pytest.raises(ValueError, match="add up to zero"):
-        run_zero(made := problem("shear_heating", **{"loading.0.strain_rate.xx": 0.5}), exact_solution(made))
+        run_point(problem("shear_heating", **{"loading.0.strain_rate.xx": 0.5}))
     with pytest.raises(ValueError, match="every strain"):
-        run_zero(made := problem("adiabatic", **{"loading": [{"stress": {"xx": 0}}]}), exact_solution(made))
+        run_point(problem("adiabatic", **{"loading": [{"stress": {"xx": 0}}]}))
 
 
 def test_rheometer_reads_its_parameters_back():
     made = mpm.load(ROOT / "configs" / "scenes" / "dough_rheometer.yaml")
     cases = mpm.plan(made).cases
-    for case, run in zip(cases, batch([case.experiment for case in cases]), strict=True):
+    for case, run in zip(cases, run_points([case.experiment for case in cases]), strict=True):
         flow = case.experiment.materials["dough"].flow
         found = rheometer.read_run(run, hold=8.0)
         assert found.E == pytest.approx(12e3, rel=1e-9) and found.nu == pytest.approx(0.15, rel=1e-9)
@@ -157,6 +157,6 @@ def test_rheometer_reads_its_parameters_back():
 
 
 def test_rheometer_without_viscosity():
-    run = run_zero(mpm.load(ROOT / "configs" / "scenes" / "dough_rheometer.yaml", {"p0": 0.6, "eta": 0}))
+    run = run_point(mpm.load(ROOT / "configs" / "scenes" / "dough_rheometer.yaml", {"p0": 0.6, "eta": 0}))
     found = rheometer.read_run(run, hold=8.0)
     assert (found.M, found.p0, found.eta) == (pytest.approx(300, rel=1e-9), pytest.approx(0.6, rel=1e-9), 0.0)
