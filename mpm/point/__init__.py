@@ -9,7 +9,8 @@ march.py    the loop over points, output times and steps
 run.py      solve(...): arrays -> Runs
 
 A point stands for one cubic metre of undeformed material: its mass is the density, its energies are per reference volume.
-From configs: mpm.scene.point. To add a law: write it in mpm.materials, register it with `pick` (tests/point/test_pick.py asks for it) and with `pace`.
+From configs: mpm.scene.point; many at once: mpm.runner.run_points. To add a law: write it in mpm.materials, register it with `pick`
+(tests/point/test_batch.py asks for it), a flow law with `relaxation` too.
 """
 
 from mpm.point.run import solve
