@@ -12,15 +12,16 @@ import numpy as np
 
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses
+from mpm.error import Errors, thermal_pressure
 from mpm.outcome import Outcome
-from mpm.state import PAD, Axisymmetric, Expansion, Latched, Run, Thermal
+from mpm.state import PAD, Axisymmetric, Run, Thermal
 
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
 
 @dataclass
 class Watch:
-    """What to record. `exact(x (N, D), t) -> theta (N,)` where a config names its solution."""
+    """What to record. `exact(x (N, D), t) -> theta (N,)`, or the Errors of a motion (mpm.error), where a config names its solution."""
 
     probes: dict[str, np.ndarray] = field(default_factory=dict)
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
@@ -44,6 +45,7 @@ class Recorder:
         self.series: dict[str, list[float]] = {}
         self.frames: list[tuple[float, dict, dict]] = []
         self.places = {name: self.place(scene, np.asarray(x, float)) for name, x in scene.watch.probes.items()}
+        self.errors = scene.watch.exact if isinstance(scene.watch.exact, Errors) else None
         self.crossed = {name: math.nan for name, _, _ in scene.watch.thresholds}
         self.seen = {probe: (0.0, self.probe(probe)) for _, probe, _ in scene.watch.thresholds}
 
@@ -76,7 +78,8 @@ class Recorder:
     def record(self, scene, clock) -> None:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
-        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock)):
+        wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
+        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *wrong.items()):
             self.series.setdefault(name, []).append(float(value))
         if np.any(np.isclose(scene.watch.snapshots, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])):
             self.frames.append((clock.time, grid_fields(scene), particle_fields(scene)))
@@ -130,7 +133,7 @@ class Recorder:
         yield "heat_ledger", total - clock.exchanged - clock.local
         for name in self.places:
             yield f"temperature_{name}", self.probe(name)
-        if scene.watch.exact is not None:
+        if scene.watch.exact is not None and self.errors is None:
             V = np.concatenate([body.particles.V0 * body.particles.J for body in self.warm])
             error = theta - scene.watch.exact(np.concatenate([body.particles.x for body in self.warm]), clock.time)
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
@@ -142,6 +145,10 @@ class Recorder:
         finals = {name: float(values[-1]) for name, values in series.items()} | self.crossed
         facts = dict(scene.facts, binds=max(clock.bound, key=clock.bound.get, default=""), bound_steps=clock.bound, heat_steps=clock.heat_steps,
                      particles=sum(len(body.particles.m) for body in scene.bodies))  # fmt: skip
+        if clock.implicit:
+            facts |= {"heat_steps_implicit": clock.implicit, "heat_iterations": clock.iterations}
+        if self.errors is not None:
+            finals |= self.errors.finals(np.array(self.times), series)
         finals["steps"] = float(clock.steps or clock.heat_steps)
         run = Run(result, np.array(self.times), series, finals, steps=clock.steps, wall_time=wall_time, facts=facts)
         if self.frames:
@@ -151,16 +158,6 @@ class Recorder:
             if run.grid:
                 run.axes = {name: np.arange(n - 2 * PAD) * scene.space.h for name, n in zip(axis_names(scene.space), grid_shape(scene.space), strict=True)}
         return run
-
-
-def thermal_pressure(body) -> np.ndarray:
-    """gamma (Theta - Theta_0) of every particle [Pa]."""
-    if isinstance(body.expansion, Expansion):
-        return body.expansion.gamma * (body.thermal.theta.astype(float) + body.expansion.shift)
-    if isinstance(body.expansion, Latched):
-        held = np.maximum(body.expansion.most, np.minimum(body.thermal.theta, body.expansion.set)).astype(float)
-        return body.expansion.gamma * (held + body.expansion.shift)
-    return np.zeros(len(body.particles.m))
 
 
 def grid_fields(scene) -> dict[str, np.ndarray]:

@@ -154,6 +154,18 @@ class Heating(NamedTuple):
     fraction: float  # chi_d, zero where dissipation heating is not named [-]
 
 
+class NoSource(NamedTuple):
+    """Nothing but gravity, walls and surroundings acts on a body."""
+
+
+class Source(NamedTuple):
+    """A force and a heat source that a law gives at every particle, over time (integrate/source.py)."""
+
+    X: np.ndarray  # (N, D) position at the start [m]
+    t: np.ndarray  # (N,) time of the particle [s]
+    law: Any
+
+
 class NoAverage(NamedTuple):
     """Each particle keeps its own change of volume."""
 
@@ -175,6 +187,7 @@ class Body(NamedTuple):
     flow: Any
     expansion: Any
     heating: Any
+    source: Any = NoSource()
     locking: Any = NoAverage()  # or Average
 
 

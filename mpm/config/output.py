@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from mpm.config.base import Kind, Model, doc, one_of
 from mpm.config.bodies import Point
+from mpm.config.exact import MOVING
 from mpm.config.exact_heat import HEAT
 from mpm.config.measured import Measured
 from mpm.config.quantities import Time
@@ -76,5 +77,5 @@ class LumpedCooling(Kind):
     body: str | None = doc(None, description="the material point; the only body unless given")
 
 
-EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder, Adiabatic, ThermalExpansion, Relaxation, ShearHeating, LumpedCooling, *HEAT)
+EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder, Adiabatic, ThermalExpansion, Relaxation, ShearHeating, LumpedCooling, *MOVING, *HEAT)
 Exact = one_of("exact solution", *EXACT)

@@ -16,6 +16,7 @@ from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.locking import average_all, relax
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
 from mpm.integrate.sharpen import sharpen
+from mpm.integrate.source import act
 from mpm.jit import kernel
 from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
@@ -69,6 +70,7 @@ def open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, repor
         respond(space, gradient, body, chunk, first, count, 0.0, dt, report)
         if report[CODE] != 0.0:
             return False
+        act(body.source, body, chunk, first, count, 0.0, dt, report)
         spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box)
     return True
 
@@ -98,6 +100,7 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
         if report[CODE] != 0.0:
             report[STEP] = step
             return False
+        act(body.source, body, chunk, first, count, dt, dt, report)
         if not last:
             spread(scheme, space, gradient, x, first, chunk, count, nodes[1 - now], force[1 - now], boxes[1 - now])
     return True

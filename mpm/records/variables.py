@@ -15,6 +15,7 @@ POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
 STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
 OK, FAILED, TIMEOUT, KILLED, DIVERGED, SKIPPED, PENDING = range(7)
 AXES = ("x", "y", "z", "r")
+EXACT_FIELDS = (("displacement", "m"), ("velocity", "m/s"), ("stress", "Pa"))
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,14 @@ TABLE = [
     ("error_l2", "", "K", SERIES, "root-mean-square error against the exact solution"),
     ("error_max", "", "K", SERIES, "largest error against the exact solution"),
     ("error_relative", "", "1", SERIES, "largest error against the exact solution, over the largest value of each quantity"),
+    *((f"error_{name}_l2", "", units, SERIES, f"root-mean-square error of {name} against the exact solution") for name, units in EXACT_FIELDS),
+    *((f"error_{name}_max", "", units, SERIES, f"largest error of {name} against the exact solution") for name, units in EXACT_FIELDS),
+    *((f"error_{name}", "", "1", POINT, f"error of {name} over its size, root mean square over the run") for name, _ in EXACT_FIELDS),
+    ("error_temperature", "", "1", POINT, "error of temperature over its size, root mean square over the run"),
+    ("error_frequency", "", "1", POINT, "relative error of the frequency"),
+    ("error_damping", "", "1", POINT, "relative error of the damping rate"),
+    ("amplitude_displacement", "U", "m", SERIES, "displacement in the shape of the wave"),
+    ("amplitude_temperature", "", "K", SERIES, "temperature in the shape of the wave"),
     # one number a point
     ("status", "", "1", POINT, "outcome of the point"),
     ("error", "", "1", POINT, "why the point is not ok"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm.basis import BASES
 from mpm.boundary import KINDS, extents
+from mpm.error import Motion
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
 from mpm.observe import Watch
 from mpm.scene.exchange import exchanging_surface
@@ -200,11 +201,14 @@ def build(experiment, exact=None) -> Scene:
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)
-    if experiment.method.locking is not None:
-        bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
     if getattr(exact, "starts", False):
         begin(bodies, exact, zero, space.h)
+    if experiment.method.locking is not None:
+        bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
     heat = experiment.method.heat
+    if isinstance(exact, Motion):
+        first, exact = exact.begin(bodies[0])
+        bodies = (first, *bodies[1:])
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),

@@ -76,7 +76,8 @@ class Looks:
             outline = shape(experiment.bodies[name].shape, grid.dimension)
             edges = [np.arange(round(size / grid.cell) + 1) * grid.cell for size in grid.size]
             volume, _ = cut_quadrature(outline, edges, 2)
-            self.inside, self.weights = volume.x, volume.w * (volume.x[:, 0] if grid.dimension == "axisymmetric" else 1.0)
+            within = outline.distance(volume.x) <= 0  # a concave side has points outside: right in sums, but no temperature is there
+            self.inside, self.weights = volume.x[within], (volume.w * (volume.x[:, 0] if grid.dimension == "axisymmetric" else 1.0))[within]
         nodes = np.zeros((0, grid.directions))
         if wanted.grid:
             names = ("r", "z") if grid.dimension == "axisymmetric" else ("x", "y", "z")[: grid.directions]

@@ -1,19 +1,27 @@
 """Problems with exact solutions: a file each. `exact(experiment) -> theta(x (N, D), t)` of the scene that a config sets up;
-for a material point (grid.dimension 0) `exact(experiment) -> solution(times) -> {series: values}`.
+for a material point (grid.dimension 0) `exact(experiment) -> solution(times) -> {series: values}`;
+for a moving body `exact(experiment) -> Motion` (mpm.error): its fields by material point, and what it starts from.
 
 To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
 """
 
 from mpm.verification import (
     adiabatic,
+    free_fall,
     gaussian_box,
+    hencky_bar,
+    hydrostatic_column,
     lumped_cooling,
+    manufactured,
     nafems_t3,
     nafems_t4,
     relaxation,
+    rigid_rotation,
     robin_cylinder,
+    robin_ring,
     robin_slab,
     shear_heating,
+    standing_wave,
     stefan,
     thermal_expansion,
 )
@@ -26,6 +34,13 @@ EXACT = {
     "relaxation": relaxation.exact,
     "shear_heating": shear_heating.exact,
     "lumped_cooling": lumped_cooling.exact,
+    "robin_ring": robin_ring.exact,
+    "hencky_bar": hencky_bar.exact,
+    "standing_wave": standing_wave.exact,
+    "rigid_rotation": rigid_rotation.exact,
+    "free_fall": free_fall.exact,
+    "hydrostatic_column": hydrostatic_column.exact,
+    "manufactured": manufactured.exact,
     "nafems_t3": nafems_t3.exact,
     "nafems_t4": nafems_t4.exact,
     "gaussian_box": gaussian_box.exact,

@@ -61,3 +61,21 @@ def bisected(function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         below = (function(middle) < 0) == rises
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return 0.5 * (low + high)
+
+
+def line_box(experiment):
+    """(body, lower end, length) of the only body, a box in 1-D at no offset."""
+    _, body = only_body(experiment)
+    if len(experiment.bodies) != 1 or experiment.grid.dimension != 1 or type(body.shape).kind != "box" or any(experiment.method.offset):
+        raise ValueError("the exact solution needs one box in grid.dimension 1, and no offset")
+    return body, body.shape.lower[0], body.shape.upper[0] - body.shape.lower[0]
+
+
+def elastic_only(experiment, body, gravity: bool = False):
+    """(elastic law, density) of a body that neither flows nor expands."""
+    from mpm.scene.build import elastic_law
+
+    material = experiment.materials[body.material]
+    if material.elastic is None or material.flow is not None or material.expansion is not None or (experiment.gravity is not None and not gravity):
+        raise ValueError("the exact solution needs an elastic body without flow and expansion" + ("" if gravity else ", and no gravity"))
+    return elastic_law(material.elastic), material.density

@@ -1,0 +1,74 @@
+"""Exact solutions of moving bodies, and of the ring: kinds of `exact`. They set what a config has no word for, such as a field of velocity at the start."""
+
+from typing import ClassVar
+
+from mpm.config.base import Kind, doc
+from mpm.config.quantities import AngularVelocity, Length, Pressure, TemperatureDifference, Velocity
+
+BODY = "the body that the solution is about; the only one unless given"
+
+
+class RobinRing(Kind):
+    """Series solution of a hollow cylinder with Robin exchange inside and outside."""
+
+    kind: ClassVar[str] = "robin_ring"
+    body: str | None = doc(None, description=BODY)
+
+
+class HenckyBar(Kind):
+    """A bar in uniaxial strain that swings in its first mode, held at both walls or free at its upper end."""
+
+    kind: ClassVar[str] = "hencky_bar"
+    body: str | None = doc(None, description=BODY)
+    amplitude: Velocity = doc(description="largest speed of the first mode at the start")
+
+
+class StandingWave(Kind):
+    """A linear thermoelastic wave between two insulated walls: frequency and damping."""
+
+    kind: ClassVar[str] = "standing_wave"
+    body: str | None = doc(None, description=BODY)
+    amplitude: Velocity = doc(description="largest speed at the start; small, for the solution is linear")
+
+
+class RigidRotation(Kind):
+    """Steady rotation and translation without strain."""
+
+    kind: ClassVar[str] = "rigid_rotation"
+    body: str | None = doc(None, description=BODY)
+
+
+class FreeFall(Kind):
+    """Flight under gravity."""
+
+    kind: ClassVar[str] = "free_fall"
+    body: str | None = doc(None, description=BODY)
+
+
+class HydrostaticColumn(Kind):
+    """A column that stands under its own weight, started in its equilibrium."""
+
+    kind: ClassVar[str] = "hydrostatic_column"
+    body: str | None = doc(None, description=BODY)
+
+
+class Manufactured(Kind):
+    """A manufactured thermoelastic motion, kept by its body force and heat source."""
+
+    kind: ClassVar[str] = "manufactured"
+    body: str | None = doc(None, description=BODY)
+    displacement: Length = doc(description="amplitude of the displacement")
+    temperature: TemperatureDifference = doc(description="amplitude of the temperature")
+    rate: AngularVelocity = doc(3.0, description="angular frequency of the displacement")
+    thermal_rate: AngularVelocity = doc(2.0, description="angular frequency of the temperature")
+
+
+class Cook(Kind):
+    """Cook's membrane: a tapered panel, clamped at the left, sheared at the right."""
+
+    kind: ClassVar[str] = "cook"
+    body: str | None = doc(None, description=BODY)
+    traction: Pressure = doc(description="shear traction on the right edge; small, for the reference is linear")
+
+
+MOVING: tuple[type[Kind], ...] = (RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured)

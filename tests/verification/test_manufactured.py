@@ -1,0 +1,71 @@
+"""Sources against the samples, compiled and not; order of displacement, stress and temperature."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpm.jit import kernel
+from mpm.sources import Made, heat, push
+from mpm.verification import exact_solution, manufactured
+
+REFERENCE = Path(__file__).parents[1] / "reference"
+
+
+@kernel
+def compiled(law, X, t):
+    return push(law, X, 0, X.shape[1] - 1, t), heat(law, X, 0, t)
+
+
+@pytest.mark.parametrize("name", ["mms1d", "mms2d"])
+def test_sources_against_the_samples(name):
+    data = json.loads((REFERENCE / "mms_samples.json").read_text())[name]
+    p = data["parameters"]
+    law = Made(p["mu"], p["lam"], p["cl"], p["R0"], p["alpha"], p["kappa"], p["T0"], p["A"], p["B"], p["omega"], 2.0, math.pi)
+    for sample in data["samples"]:
+        X = np.array([sample["X"]])
+        assert [push(law, X, 0, c, sample["t"]) for c in range(X.shape[1])] == pytest.approx(sample["body_force_per_mass"], abs=1e-14)
+        assert heat(law, X, 0, sample["t"]) == pytest.approx(sample["heat_source_per_mass"], abs=1e-14)
+        assert compiled(law, X, sample["t"]) == pytest.approx([sample["body_force_per_mass"][-1], sample["heat_source_per_mass"]], abs=1e-14)
+
+
+def test_stress_against_the_samples(shipped):
+    for name, config in (("mms1d", "manufactured_1d"), ("mms2d", "manufactured_2d")):
+        motion = exact_solution(shipped(config, {"exact.manufactured.displacement": 0.05}))
+        for sample in json.loads((REFERENCE / "mms_samples.json").read_text())[name]["samples"]:
+            tau = motion.fields["stress"](np.array([sample["X"]]), sample["t"])[0]
+            assert tau[: len(sample["X"])] == pytest.approx(np.multiply(sample["P_diag"], sample["F_diag"]), abs=1e-14)
+
+
+def orders(core, runs):
+    return [core.order([run.finals[f"error_{field}"] for run in runs]) for field in ("displacement", "stress", "temperature")]
+
+
+def test_order_on_a_line(core, points):
+    runs = points("manufactured_1d", "grid.cell", (0.125, 0.0625, 0.03125))
+    displacement, stress, temperature = orders(core, runs)
+    assert displacement > manufactured.ORDER and stress > manufactured.STRESS and temperature > manufactured.ORDER
+
+
+@pytest.mark.slow
+def test_order_in_the_plane(core, points):
+    displacement, stress, temperature = orders(core, points("manufactured_2d", "grid.cell", (0.125, 0.0625, 0.03125)))
+    assert displacement > manufactured.ORDER and stress > manufactured.STRESS and temperature > manufactured.ORDER
+
+
+@pytest.mark.slow
+def test_large_strain_does_not_spoil_refinement(points):
+    """Strain 0.31, four particles a cell: below 2e-3 at 128 cells, and no rise on the way."""
+    changes = {"exact.manufactured.displacement": 0.1}
+    runs = [points("manufactured_1d", "grid.cell", [1 / n], changes | {"method.heat_step": 0.25 / n})[0] for n in (32, 64, 128)]
+    for field in ("displacement", "stress"):
+        errors = [run.finals[f"error_{field}"] for run in runs]
+        assert errors[-1] < 2e-3 and errors[0] > errors[1] > errors[2]
+
+
+@pytest.mark.parametrize(("changes", "words"), [({"bodies.block.shape.box.upper": [0.8]}, "fills"), ({"bodies.block.temperature": 2}, "reference")])
+def test_another_scene_is_refused(shipped, changes, words):
+    with pytest.raises(ValueError, match=words):
+        exact_solution(shipped("manufactured_1d", changes))
