@@ -1,0 +1,47 @@
+"""Scenes that are compared with a measurement or a formula from outside: the targets themselves."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mpm
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+
+
+def rise(run, axis):
+    """How far the material has moved outwards along `axis` [mm]: the start of the body's own outermost particles is zero."""
+    outer = run.series[f"position_max_{axis}"]
+    return (outer - outer[0]) * 1e3
+
+
+@pytest.mark.slow
+def test_chocolate_spreads_to_where_its_yield_stress_holds_it():
+    """Radius within 5 % of Roussel & Coussot's, height in the middle within 10 %; at rest; of one volume."""
+    experiment = mpm.load(CONFIGS / "scenes" / "chocolate_pour.yaml")
+    rho, tau, V = 1270, experiment.materials["chocolate"].flow.M.value / np.sqrt(3), np.pi * 0.028**2 * 0.0203
+    radius = (225 * rho * 9.81 * V**2 / (128 * np.pi**2 * tau)) ** 0.2
+    assert radius == pytest.approx(64.4e-3, rel=2e-3)
+    run = mpm.run_point(experiment)
+    assert run.outcome.ok
+    assert run.series["position_max_r"][-1] == pytest.approx(radius, rel=0.05)
+    assert run.series["position_max_z"][-1] == pytest.approx(np.sqrt(2 * tau * radius / (rho * 9.81)), rel=0.1)
+    late = run.times > 0.8 * run.times[-1]
+    assert np.ptp(run.series["position_max_r"][late]) < 0.01 * radius
+    assert run.series["volume_total"][-1] == pytest.approx(run.series["volume_total"][0], rel=5e-3)
+    assert run.series["J_min"].min() > 0.95 and run.series["J_max"].max() < 1.05
+
+
+@pytest.mark.slow
+def test_loaf_rises_as_measured():
+    """Top within 2 mm of the three measured heights, to which it was fitted; the time scaling is within its bounds."""
+    run = mpm.run_point(mpm.load(CONFIGS / "scenes" / "loaf_oven_spring.yaml"))
+    assert run.outcome.ok and run.facts["time_scaling"]["valid"]
+    with open(CONFIGS / "data" / "zhang-datta-2006-rise.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#"))]
+    assert len(rows) == 3
+    for row in rows:
+        assert np.interp(float(row["second"]), run.times, rise(run, "z")) == pytest.approx(float(row["top_mm"]), abs=2), row
+    assert run.wall_time < 60
