@@ -1,0 +1,96 @@
+"""From a config to a scene: positions, laws, walls, what is refused."""
+
+import numpy as np
+import pytest
+
+from mpm.boundary import CONTACT, SLIP, STICK
+from mpm.materials import Hencky
+from mpm.scene.build import SceneError, build, elastic_law, output_times
+from mpm.state import PAD, NoExchange, NoExpansion, NoHeating
+from mpm.transfer import Apic, Bspline, Flip, Mls
+
+
+@pytest.mark.parametrize("pair", [{"E": 5.2, "nu": 0.3}, {"lam": 3.0, "mu": 2.0}, {"K": 13 / 3, "mu": 2.0}])
+def test_pairs_of_moduli(core, pair):
+    law = elastic_law(core.experiment(1, materials={"solid": {"density": 1, "elastic": {"hencky": pair}}}, surfaces=[]).materials["solid"].elastic)
+    assert law == (Hencky(2.0, 3.0) if "E" not in pair else pytest.approx(Hencky(2.0, 3.0)))
+
+
+@pytest.mark.parametrize("expansion", [{"modulus": {"gamma": 0.26}}, {"linear": {"coefficient": 0.02}}, {"source": {"c": 0.26 / 3}}])
+def test_stress_temperature_modulus_in_three_ways(core, expansion):
+    """gamma = 3 K alpha_L = c lam, with K = 13/3 and lam = 3; the shift is to the reference."""
+    kind = next(iter(expansion))
+    material = core.config(1)["materials"]["solid"] | {"expansion": {kind: expansion[kind] | {"reference": 350.0}}}
+    body = build(core.experiment(1, materials={"solid": material})).bodies[0]
+    assert body.expansion.gamma == pytest.approx(0.26) and body.expansion.shift == core.HOT - 350.0
+    assert body.heating.gamma == body.expansion.gamma
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3, -0.45])
+def test_offset_moves_bodies_and_probes_alike(core, offset):
+    experiment = core.experiment(2, {"method.offset": [offset, 0.0]}, output={"probes": {"corner": [0.6, 0.6]}})
+    scene = build(experiment)
+    p, shift = scene.bodies[0].particles, offset * 0.25
+    assert np.average(p.x, axis=0, weights=p.V0) == pytest.approx([0.975 + shift, 0.975])
+    assert p.V0.sum() == pytest.approx(0.75**2) and scene.watch.probes["corner"] == pytest.approx([0.6 + shift, 0.6])
+
+
+def test_grid_has_room_outside_the_domain(core):
+    scene = build(core.experiment(3))
+    assert (scene.space.n0, scene.space.n1, scene.space.n2) == (9 + 2 * PAD,) * 3 and scene.space.h == 0.25
+
+
+def test_particles_a_cell(core):
+    body = {"shape": {"box": {"lower": [0.5, 0.5], "upper": [1.0, 1.25]}}, "material": "solid"}
+    for count in (1, 2, 3):
+        assert len(build(core.experiment(2, {"method.particles": count}, bodies={"body": body})).bodies[0].particles.m) == 6 * count**2
+
+
+def test_walls_gravity_and_the_axis(core):
+    scene = build(core.experiment("axisymmetric", walls={"bottom": "stick", "outer": "contact"}, gravity=[0, -9.81]))
+    assert scene.walls[:2].tolist() == [[SLIP, CONTACT], [STICK, SLIP]] and scene.gravity.tolist() == [0, -9.81]
+
+
+def test_methods(core):
+    scene = build(core.experiment(1))
+    assert (scene.scheme, scene.gradient, scene.blend, scene.affine) == (Apic(), Mls(), 1.0, 1.0)
+    scene = build(core.experiment(1, method={"transfer": {"flip": {"blend": 0.1}}, "temperature": {"flip": {"blend": 0.2}}, "gradient": "bspline"}))
+    assert (scene.scheme, scene.gradient, scene.blend, scene.affine) == (Flip(0.1, 0.0), Bspline(), 0.2, 0.0)
+    scene = build(core.experiment(1, method={"transfer": {"pic": {}}, "temperature": {"pic": {}}}))
+    assert (scene.scheme, scene.blend, scene.affine) == (Flip(1.0, 0.0), 1.0, 0.0)
+
+
+def test_absent_physics_is_an_object(core):
+    body = build(core.experiment(1, drop=("surfaces", "expansion", "heating"))).bodies[0]
+    assert (body.surface, body.expansion, body.heating) == (NoExchange(), NoExpansion(), NoHeating())
+
+
+def test_rotation_about_the_centre_of_mass(core):
+    body = {"shape": {"box": {"lower": [0.6] * 3, "upper": [1.35] * 3}}, "material": "solid", "velocity": [0.1, 0, 0], "angular_velocity": [0.5, -0.8, 1.2]}
+    p = build(core.experiment(3, bodies={"body": body})).bodies[0].particles
+    arm = p.x - 0.975
+    assert np.allclose(p.v, np.array([0.1, 0, 0]) + np.cross([0.5, -0.8, 1.2], arm))
+    assert np.allclose(np.einsum("pcd,pd->pc", p.C, arm), p.v - np.array([0.1, 0, 0]))
+
+
+def test_output_times_end_at_the_end(core):
+    assert np.allclose(output_times(core.experiment(1, {"time.end": 1.0, "output.every": 0.3})), [0, 0.3, 0.6, 0.9, 1.0])
+    assert np.allclose(output_times(core.experiment(1, {"time.end": 0.9, "output.every": 0.3})), [0, 0.3, 0.6, 0.9])
+
+
+def refused(core, *words, changes=None, dimension=1, **sections):
+    with pytest.raises(SceneError) as told:
+        build(core.experiment(dimension, changes, **sections))
+    assert all(word in str(told.value) for word in words), told.value
+
+
+def test_refused_with_advice(core):
+    refused(core, "grid.cell", "whole number", changes={"grid.cell": 0.3})
+    refused(core, "method.offset", changes={"method.offset": [0.3, 0.0]}, dimension="axisymmetric")
+    rigid = core.config(1)["bodies"] | {"stone": {"shape": {"box": {"lower": [1.5], "upper": [1.75]}}, "material": "stone"}}
+    materials = core.config(1)["materials"] | {"stone": {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}}
+    refused(core, "stone", "elastic", bodies=rigid, materials=materials)
+
+
+def test_exchange_without_conduction_is_refused(core):
+    refused(core, "kappa", "conductivity", changes={"kappa": 0.0})

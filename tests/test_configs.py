@@ -1,0 +1,54 @@
+"""Every config that ships loads, says what it is for, and runs to the end in its short form."""
+
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+import mpm
+
+ROOT = Path(__file__).parent.parent / "configs"
+CONFIGS = sorted(path for path in ROOT.rglob("*.yaml"))
+each = pytest.mark.parametrize("path", CONFIGS, ids=lambda path: str(path.relative_to(ROOT)))
+HEADINGS = ("Purpose", "Cost", "Source")
+
+
+def test_there_are_configs():
+    assert len(CONFIGS) >= 4
+
+
+@each
+def test_it_says_what_it_is_for(path):
+    """The schema line for editors first, then purpose, cost and source as comments."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert re.fullmatch(r"# yaml-language-server: \$schema=(\.\./)*schema\.json", lines[0])
+    assert (path.parent / lines[0].split("=")[1]).resolve() == (ROOT / "schema.json").resolve()
+    comments = [line.lstrip("# ") for line in lines[1:] if line.startswith("#")]
+    for heading in HEADINGS:
+        said = [line for line in comments if line.startswith(heading)]
+        assert said and len(said[0]) > len(heading) + 10, heading
+
+
+@each
+def test_it_loads_and_plans(path):
+    experiment = mpm.load(path)
+    assert experiment.title and experiment.name == path.stem
+    assert mpm.plan(experiment).cases
+
+
+@each
+def test_its_short_form_runs(path):
+    """The first point of --smoke, in under 10 s once compiled."""
+    experiment = mpm.load(path, smoke=True)
+    point = mpm.plan(experiment).cases[0].experiment
+    from mpm.runner import warm
+
+    warm(point)
+    began = time.process_time()
+    run = mpm.run_point(point)
+    assert run.outcome.ok, run.outcome
+    assert time.process_time() - began < 10
+    assert run.times[-1] == pytest.approx(point.time.end)
+    if "heat_ledger" in run.series:
+        assert abs(run.series["heat_ledger"]).max() <= 1e-12 * max(abs(run.series["heat_exchanged"]).max(), abs(run.series["heat_total"]).max())

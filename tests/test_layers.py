@@ -1,0 +1,143 @@
+"""The house rules that a reader cannot see at a glance, read from the syntax trees: imports go down only, flags, sizes, lazy front doors."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "mpm"
+MODULES = sorted(PACKAGE.rglob("*.py"))
+STANDARD = set(sys.stdlib_module_names)
+
+# Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
+LAYERS = {
+    "jit": 0, "tensors": 0, "outcome": 0, "state": 0,
+    "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
+    "diagnostics": 2, "integrate": 2,
+    "error": 2, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
+    "config": 4, "records": 4, "scene": 4,
+    "runner": 5, "costs": 5, "sweep": 5, "verification": 5,
+    "study": 6, "plots": 6,
+}  # fmt: skip
+PEERS = {
+    "state": {"outcome"}, "tensors": {"jit"},
+    "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
+    "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe"},
+    "runner": {"verification", "costs"}, "sweep": {"runner", "verification", "costs"},
+}  # fmt: skip
+LEAVES = {"mpm.records.variables"}  # anyone may import it
+GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
+COMPUTING = 3  # the last layer that may know only numbers
+
+
+def room(path):
+    place = path.relative_to(PACKAGE)
+    return place.parts[0] if len(place.parts) > 1 else place.stem
+
+
+def imports(path):
+    """(module, whether at the top level) of every import, relative ones made absolute, `from mpm import x` as mpm.x."""
+    package = ("mpm", *path.relative_to(PACKAGE).parts[:-1])
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    top = set(map(id, tree.body))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, id(node) in top) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join((*package[: len(package) - node.level + 1], *([node.module] if node.module else []))) if node.level else node.module
+            if base == "mpm":
+                yield from ((f"mpm.{alias.name}", id(node) in top) for alias in node.names)
+            else:
+                yield base, id(node) in top
+
+
+def known(path):
+    return room(path) in LAYERS
+
+
+def test_every_room_has_a_layer():
+    assert {room(path) for path in MODULES} - set(LAYERS) == {"__init__"}
+
+
+@pytest.mark.parametrize("path", [path for path in MODULES if known(path)], ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_go_down(path):
+    own = room(path)
+    for module, _ in imports(path):
+        if not module.startswith("mpm.") or module in LEAVES:
+            continue
+        other = module.split(".")[1]
+        if own == "rigid" and module in GEOMETRY:
+            continue
+        allowed = other == own or LAYERS[other] < LAYERS[own] or other in PEERS.get(own, ())
+        assert allowed, f"{path.relative_to(ROOT)} (layer {LAYERS[own]}) imports {module} (layer {LAYERS[other]})"
+
+
+@pytest.mark.parametrize("path", [path for path in MODULES if known(path) and LAYERS[room(path)] <= COMPUTING], ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_the_computing_layers_know_only_numbers(path):
+    allowed = STANDARD | {"numpy", "numba", "mpm"} | ({"scipy"} if room(path) == "rigid" else set())
+    foreign = {module for module, _ in imports(path) if module.split(".")[0] not in allowed}
+    assert not foreign
+
+
+def test_config_and_records_do_not_know_each_other():
+    for path in MODULES:
+        for module, _ in imports(path):
+            if room(path) == "records":
+                assert not module.startswith("mpm.config"), path
+            if room(path) == "config" and module.startswith("mpm.records"):
+                assert module in LEAVES, path
+
+
+def test_plots_see_datasets_only():
+    allowed = STANDARD | {"numpy", "matplotlib", "xarray", "mpm"}
+    for path in MODULES:
+        if room(path) == "plots":
+            for module, _ in imports(path):
+                assert module.split(".")[0] in allowed and (not module.startswith("mpm.") or module in LEAVES or module.startswith("mpm.plots")), (path, module)
+
+
+def calls(tree):
+    return (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_no_dangerous_flags_and_no_code_as_data(path):
+    """fastmath=True would remove isnan; parallel=True would make sums depend on threads; eval and pickle have no place here; njit only in jit.py."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for call in calls(tree):
+        for keyword in call.keywords:
+            assert not (keyword.arg in ("fastmath", "parallel") and isinstance(keyword.value, ast.Constant) and keyword.value.value is True)
+        name = call.func.id if isinstance(call.func, ast.Name) else ""
+        assert name not in ("eval", "exec"), f"{name} in {path}"
+        assert name != "njit" or path.name == "jit.py"
+    assert not {"pickle", "dill", "cloudpickle", "marshal"} & {module.split(".")[0] for module, _ in imports(path)}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_errors_are_not_swallowed(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ExceptHandler):
+            broad = node.type is None or (isinstance(node.type, ast.Name) and node.type.id in ("Exception", "BaseException"))
+            assert not (broad and all(isinstance(inner, ast.Pass) for inner in node.body)), f"{path}:{node.lineno}"
+
+
+@pytest.mark.parametrize("path", MODULES + sorted((ROOT / "cli").rglob("*.py")), ids=lambda path: str(path.relative_to(ROOT)))
+def test_modules_are_short_and_say_what_they_are(path):
+    text = path.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 300
+    assert not text or ast.get_docstring(ast.parse(text)), "a docstring"
+
+
+HEAVY = {"numba", "xarray", "scipy", "matplotlib", "pint", "h5netcdf", "h5py", "pandas", "pydantic"}
+
+
+@pytest.mark.parametrize("module", ["mpm", "cli.main"])
+def test_the_front_doors_are_light(module):
+    """`import mpm` and `mpm --help` load nothing heavy."""
+    code = f"import sys, importlib; importlib.import_module({module!r}); print(*sorted({HEAVY!r} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []

@@ -1,0 +1,135 @@
+"""Compiled equals plain Python, for the whole step of every dimension and transfer, and every sibling of every role is run by it.
+
+The same scenes run here, compiled, and in a process with NUMBA_DISABLE_JIT=1, which also says which functions it entered.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parent.parent
+AIR = [{"of": "body", "convection": {"beta": 0.5, "outside": 300.0}}]
+KEEP = ("x", "v", "C", "B", "J")
+
+
+def scenes():
+    """Small and full of physics: name -> config. The kinds are those that other tests compile too."""
+    common = config_of()
+    for dimension in (1, 2, "axisymmetric", 3):
+        for transfer, gradient in (("apic", "mls"), ("flip", "bspline")):
+            data = common.config(dimension, surfaces=AIR, method=common.methods(transfer, gradient) | {"heat_step": 0.05, "particles": 1})
+            data["materials"]["solid"]["expansion"]["modulus"]["gamma"] = 0.01
+            data["time"] = {"end": 0.1, "step": 0.025}
+            yield f"{dimension} {transfer} {gradient}", data
+    for name, heat in (("1 implicit", {"implicit": {}}), ("1 second order", {"implicit": {"order": 2}})):
+        data = common.config(1, surfaces=AIR, method={"heat": heat, "heat_step": 0.05}, time={"end": 0.1, "step": 0.025})
+        yield name, data
+    bare = common.config(1, surfaces=[], time={"end": 0.1, "step": 0.025})
+    bare["materials"]["solid"] = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}}
+    bare["walls"] = {"left": "contact", "right": "stick"}
+    yield "bare", bare
+
+
+def config_of():
+    """The helpers of conftest.py, also where pytest does not run."""
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location("common", Path(__file__).parent / "conftest.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def stir(scene):
+    p = scene.bodies[0].particles
+    rates = 0.3 * np.diag([0.9, -0.6, 0.7][: p.x.shape[1]])
+    p.v[:], p.C[:] = (p.x - 0.1) @ rates, rates
+
+
+def results():
+    """Arrays of every scene at its end, as lists."""
+    import mpm
+
+    common, found = config_of(), {}
+    for name, data in scenes():
+        scene, run = common.play(mpm.load(data), stir)
+        body = scene.bodies[0]
+        found[name] = {field: getattr(body.particles, field).tolist() for field in KEEP} | {"series": {k: v.tolist() for k, v in run.series.items()}}
+        found[name]["outcome"] = str(run.outcome)
+        if hasattr(body.thermal, "theta"):
+            found[name] |= {"theta": body.thermal.theta.tolist(), "c": body.thermal.c.tolist()}
+    return found
+
+
+def registered():
+    """{role.kind: code place} of every function that a role of the rooms of a step may choose."""
+    import mpm.simulation  # noqa: F401  imports the rooms
+
+    found = {}
+    for room, module in list(sys.modules.items()):
+        if room.startswith(("mpm.transfer", "mpm.boundary", "mpm.heat", "mpm.integrate", "mpm.diagnostics")):
+            for name, role in vars(module).items():
+                if hasattr(role, "registry") and hasattr(role, "dispatch") and role.__module__ == room:
+                    for kind, function in role.registry.items():
+                        if kind is not object:
+                            code = getattr(function, "py_func", function).__code__
+                            found[f"{name}({kind.__name__})"] = [code.co_filename, code.co_firstlineno]
+    return found
+
+
+def in_plain_python():
+    """Run without compilation, and note every function entered."""
+    entered = set()
+    sys.setprofile(lambda frame, event, _: entered.add((frame.f_code.co_filename, frame.f_code.co_firstlineno)) if event == "call" else None)
+    found = results()
+    sys.setprofile(None)
+    missed = [name for name, place in registered().items() if tuple(place) not in entered]
+    print(json.dumps({"results": found, "missed": missed}))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, __file__], cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return json.loads(done.stdout)
+
+
+def compare(compiled, other, place):
+    if isinstance(compiled, dict):
+        assert compiled.keys() == other.keys()
+        for name in compiled:
+            compare(compiled[name], other[name], f"{place}.{name}")
+    elif isinstance(compiled, str):
+        assert compiled == other, place
+    else:
+        a, b = np.array(compiled, float), np.array(other, float)
+        # theta is a small difference of temperatures of 400 K, hence the absolute part.
+        assert np.allclose(a, b, rtol=1e-10, atol=1e-11 * max(1.0, np.abs(a).max(initial=0.0))), f"{place}: {np.abs(a - b).max():.3g}"
+
+
+def test_compiled_equals_plain_python(plain):
+    compare(results(), plain["results"], "")
+
+
+# Siblings that would cost a compilation each: slow tests, or tests of their own rooms, run them compiled. A new one is named here or gets a scene.
+ELSEWHERE = {
+    "impulse_parts(Mls)", "carry(Xpic)", "wants_change(Xpic)", "sharpen(Xpic)", "what_is_lost(Isothermal)", "what_is_lost(Thermal)",
+    "scatter_square(Plane)", "scatter_square(Axisymmetric)", "scatter_square(Volume)", "advance_heat(Isothermal)", "advance_implicit(Isothermal)",
+    "exchange(NoExchange)", "meet(NoExchange)", "place(NoExchange)", "radiate(Radiation)", "rise(Bump)", "rise(Logistic)", "rise(Table)",
+    "thermal_stress(Latched)", "latch(Latched)", "flows(EllipseClipped)", "flows(EllipseRadial)",
+}  # fmt: skip
+
+
+def test_every_sibling_of_every_role_was_run(plain):
+    """A new law, dimension or transfer without a scene here is noticed."""
+    assert set(plain["missed"]) <= ELSEWHERE
+
+
+if __name__ == "__main__":
+    in_plain_python()
