@@ -1,0 +1,120 @@
+"""The table of the verification problems: `python -m mpm.study.verification` writes configs/verification/README.md.
+
+Every config there, as one point, at three resolutions: those of its sweep over grid.cell or time.step, else its own halved twice (cells of a
+body on a grid, steps of a material point). The order is fitted to all three; where errors are at round-off there is none.
+"""
+
+import importlib
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperature, K", "error_relative": "all fields, relative"}  # the first that a run has
+ROUND_OFF = 1e-11
+FOLDER = Path(__file__).parents[2] / "configs" / "verification"
+HEAD = """# Verification problems
+
+Made by `python -m mpm.study.verification` in {seconds:.0f} s of processor time, compilation included. Each line is a config of this folder at the three
+resolutions that are named; what the problem is stands at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
+displacement over all times and particles, relative; of temperature at the end. Time is that of the three runs, without compilation.
+
+| config | method | refined | error | at three resolutions | order | declared | time, s |
+|---|---|---|---|---|---|---|---|
+"""
+
+
+@dataclass(frozen=True)
+class Line:
+    """One row of the table."""
+
+    name: str
+    method: str
+    path: str
+    values: tuple[float, ...]
+    field: str
+    errors: tuple[float, ...]
+    declared: float | None
+    seconds: float
+
+    def order(self) -> float | None:
+        """Slope of the errors over the resolution."""
+        if not all(error > ROUND_OFF for error in self.errors):
+            return None
+        return float(np.polyfit(np.log(self.values), np.log(self.errors), 1)[0])
+
+    def text(self) -> str:
+        """As a row of Markdown."""
+        order = self.order()
+        shown = ["-" if number is None else f"{number:.2f}" for number in (order, self.declared)]
+        values, errors = (", ".join(f"{number:.3g}" for number in row) for row in (self.values, self.errors))
+        return f"| {self.name} | {self.method} | {self.path} {values} | {ERRORS[self.field]} | {errors} | {shown[0]} | {shown[1]} | {self.seconds:.2g} |"
+
+
+def refinement(experiment):
+    """What is refined, its three values, and the three points: along the sweep's own axis where it has one (others at their first value), else halved."""
+    from mpm.config import load
+    from mpm.sweep.cases import plan
+
+    cases = plan(experiment)
+    for k, dimension in enumerate(cases.dims):
+        for path in ("grid.cell", "time.step"):
+            if dimension.size >= 3 and path in (coordinate.config_path for coordinate in dimension.coords):
+                found = [case for case in cases.cases if not any(index for j, index in enumerate(case.index) if j != k)]
+                found = [case.experiment for case in sorted(found, key=lambda case: -value(case.experiment, path))[:3]]
+                return path, tuple(value(point, path) for point in found), found
+    path, base = ("grid.cell", experiment.grid.cell) if experiment.grid.dimension != 0 else ("time.step", experiment.time.step)
+    if not isinstance(base, float):
+        base = experiment.output.every
+    values = (base, base / 2, base / 4)
+    return path, values, [load(experiment.resolved() | {"sweep": None}, {path: value}) for value in values]
+
+
+def value(experiment, path: str) -> float:
+    return experiment.grid.cell if path == "grid.cell" else experiment.time.step
+
+
+def method(experiment) -> str:
+    """The method in a few words."""
+    if experiment.grid.dimension == 0:
+        return "material point"
+    if not experiment.moving:
+        return f"rigid, {type(experiment.method.rigid).kind}"
+    words = type(experiment.method.transfer).kind, experiment.method.gradient, f"{experiment.method.particles} particles"
+    return ", ".join(words)
+
+
+def measure(path: Path) -> Line:
+    """Run one config at its three resolutions. RuntimeError where one does not complete."""
+    from mpm.config import load
+    from mpm.runner import run_point
+
+    experiment = load(path)
+    refined, values, points = refinement(experiment)
+    errors, seconds, field = [], 0.0, ""
+    run_point(points[0])  # compiles
+    for point in points:
+        began = time.perf_counter()
+        run = run_point(point)
+        seconds += time.perf_counter() - began
+        if not run.outcome.ok:
+            raise RuntimeError(f"{path.name} at {refined} {values[len(errors)]:g}: {run.outcome}")
+        field = next(name for name in ERRORS if name in run.finals)
+        errors.append(run.finals[field])
+    declared = importlib.import_module(f"mpm.verification.{type(experiment.exact).kind}").ORDER
+    return Line(path.stem, method(experiment), refined, values, field, tuple(errors), declared, seconds)
+
+
+def main() -> None:
+    """Measure every config and write the table; a line on standard error for each."""
+    lines = []
+    for path in sorted(FOLDER.glob("*.yaml")):
+        lines.append(measure(path).text())
+        print(lines[-1], file=sys.stderr, flush=True)
+    (FOLDER / "README.md").write_text(HEAD.format(seconds=time.process_time()) + "\n".join(lines) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

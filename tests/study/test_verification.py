@@ -1,0 +1,33 @@
+"""The table's parts: what is refined, the fitted order, a line for a config that is quick to run."""
+
+import pytest
+
+import mpm
+from mpm.study.verification import FOLDER, Line, measure, refinement
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "values"),
+    [("hencky_bar", "grid.cell", (0.125, 0.0625, 0.03125)), ("free_fall", "time.step", (0.08, 0.04, 0.02)), ("thermal_expansion", "time.step", None)],
+)
+def test_what_is_refined(name, path, values):
+    found, steps, points = refinement(mpm.load(FOLDER / f"{name}.yaml"))
+    assert found == path and len(points) == len(steps) == 3
+    assert values is None or steps == pytest.approx(values)
+    assert steps[0] > steps[1] > steps[2]
+
+
+def test_order_is_fitted_and_round_off_has_none():
+    line = Line("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (0.16, 0.04, 0.01), 1.8, 1.0)
+    assert line.order() == pytest.approx(2.0)
+    assert "| 0.16, 0.04, 0.01 | 2.00 | 1.80 |" in line.text()
+    assert Line("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (1e-15, 0.0, 1e-15), None, 1.0).order() is None
+
+
+def test_a_line_of_a_material_point():
+    line = measure(FOLDER / "relaxation.yaml")
+    assert line.method == "material point" and line.order() > line.declared
+
+
+def test_every_config_has_an_exact_solution():
+    assert all(mpm.load(path).exact is not None for path in FOLDER.glob("*.yaml"))
