@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from mpm.config.base import Kind, doc
-from mpm.config.quantities import AngularVelocity, Length, Pressure, TemperatureDifference, Velocity
+from mpm.config.quantities import AngularVelocity, Length, TemperatureDifference, Velocity
 
 BODY = "the body that the solution is about; the only one unless given"
 
@@ -61,14 +61,6 @@ class Manufactured(Kind):
     temperature: TemperatureDifference = doc(description="amplitude of the temperature")
     rate: AngularVelocity = doc(3.0, description="angular frequency of the displacement")
     thermal_rate: AngularVelocity = doc(2.0, description="angular frequency of the temperature")
-
-
-class Cook(Kind):
-    """Cook's membrane: a tapered panel, clamped at the left, sheared at the right."""
-
-    kind: ClassVar[str] = "cook"
-    body: str | None = doc(None, description=BODY)
-    traction: Pressure = doc(description="shear traction on the right edge; small, for the reference is linear")
 
 
 MOVING: tuple[type[Kind], ...] = (RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured)

@@ -1,4 +1,4 @@
-"""A force and a heat source of their own at every particle: what a manufactured solution or a load on a body's surface asks for.
+"""A force and a heat source of their own at every particle: what a manufactured solution asks for.
 
 impulse   m b(X, t) dt on to the nodes with the stress;   heat   theta grows by r(X, t + dt/2) dt through the enthalpy
 Laws are in mpm.sources. A body without a source compiles none of this.
