@@ -1,0 +1,112 @@
+"""Implicit heat of moving bodies: exact series, any beta, the ledger, walls, laws of temperature."""
+
+import numpy as np
+import pytest
+
+import mpm
+from mpm.verification import exact_solution
+
+END, INF = 0.2, float("inf")
+IMPLICIT, SECOND, EXPLICIT = {"implicit": {}}, {"implicit": {"order": 2}}, {"explicit": {}}
+
+
+def slab(core, biot, n, offset=0.3, heat=IMPLICIT, speed=1.0, step="auto", surface=None, **material):
+    """Half-thickness 1, n cells to it, thrown across the grid."""
+    h = 1 / n
+    lower = 0.5 + offset * h
+    heat_law = {"fourier": {"kappa": 1.0, "alpha": 1.0} | material}
+    return core.experiment(
+        grid={"dimension": 1, "size": [3.5], "cell": h},
+        bodies={"body": {"shape": {"box": {"lower": [lower], "upper": [lower + 2]}}, "temperature": core.HOT, "material": "solid", "velocity": [speed]}},
+        materials={"solid": {"density": 1.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}, "heat": heat_law}},
+        surfaces=[{"of": "body"} | (surface or {"convection": {"beta": biot, "outside": core.COLD}})],
+        time={"end": END},
+        output={"every": END},
+        method={"heat": heat, "heat_step": step},
+        exact={"robin_slab": {}},
+    )
+
+
+def cooled(core, experiment, speed=1.0):
+    """(root-mean-square error in units of the fall, run)."""
+    scene, run = core.play(experiment)
+    assert run.outcome.ok
+    assert abs(run.finals["heat_ledger"]) <= 1e-12 * max(abs(run.finals["heat_exchanged"]), 1e-6)
+    body = scene.bodies[0]
+    x = body.particles.x - speed * END
+    wrong = (core.HOT + body.thermal.theta - exact_solution(experiment)(x, END)) / (core.HOT - core.COLD)
+    return np.sqrt(np.average(wrong**2, weights=body.particles.V0)), run
+
+
+@pytest.mark.parametrize("biot", [1.0, 10.0, INF])
+def test_slab_at_the_worst_of_offsets(core, biot):
+    worst = [max(cooled(core, slab(core, biot, n, offset))[0] for offset in (0, 0.15, 0.3, 0.45)) for n in (8, 16, 32)]
+    assert core.order(worst) > 1.7 and worst[-1] < 5e-4
+
+
+def test_second_order_in_time(core):
+    """Steps of 0.02 (Fourier number of the cell 20): the first order is 1e-2 off, the second 1e-3."""
+    first, second = (cooled(core, slab(core, 10.0, 32, heat=heat, step=0.02))[0] for heat in (IMPLICIT, SECOND))
+    assert second < 2e-3 < 4e-3 < first
+
+
+def test_infinite_beta_is_a_fixed_temperature(core):
+    runs = [cooled(core, slab(core, INF, 8))[1], cooled(core, slab(core, INF, 8, surface={"fixed": {"temperature": core.COLD}}), 1.0)[1]]
+    assert runs[0].finals["temperature_mean"] == runs[1].finals["temperature_mean"]
+
+
+def test_any_beta_ends_and_cools_more_than_a_smaller_one(core):
+    betas = [0.0, 1e-3, 1e-1, 1.0, 1e1, 1e2, 1e4, 1e6, 1e9, 1e12, INF]
+    runs = [core.play(slab(core, beta, 8, heat="auto"))[1] for beta in betas]
+    assert all(run.outcome.ok for run in runs)
+    mean, low = ([run.finals[name] for run in runs] for name in ("temperature_mean", "temperature_min"))
+    assert np.all(np.diff(mean[:8]) < 0) and np.all(np.diff(mean) <= 1e-9) and min(low) > core.COLD
+    assert "heat_steps_implicit" not in runs[3].facts and runs[-1].facts["heat_steps_implicit"] > 0
+
+
+def test_tolerance_does_not_enter_the_ledger(core):
+    loose, tight = (cooled(core, slab(core, 10.0, 8, heat={"implicit": {"tolerance": t}}))[1] for t in (1e-2, 1e-12))
+    assert loose.facts["heat_iterations"] < tight.facts["heat_iterations"]
+    assert loose.finals["temperature_mean"] == pytest.approx(tight.finals["temperature_mean"], abs=0.5)
+
+
+@pytest.mark.parametrize("step", ["auto", 0.02])
+def test_latent_heat_is_not_jumped_over(core, step):
+    """Through a bump of 100 J/kg: what is not sensible heat is latent."""
+    alpha = {"bump": {"base": 1.0, "heat": 100.0, "at": 350.0, "width": 2.0}}
+    experiment = slab(core, 50.0, 8, step=step, alpha=alpha).resolved() | {"exact": None, "time": {"end": 4.0}, "output": {"every": 4.0}}
+    experiment["bodies"]["body"]["velocity"] = [0.0]
+    _, run = core.play(mpm.load(experiment))
+    assert run.outcome.ok and run.finals["temperature_max"] < 340
+    assert run.finals["heat_exchanged"] == pytest.approx(2 * (run.finals["temperature_mean"] - core.HOT - 100.0), rel=1e-6)
+
+
+def test_mirror_walls_are_insulated(core):
+    """A slab that fills the domain between two slip walls levels out; explicit and implicit agree. (The flux is nothing: it saves a compilation.)"""
+    ends = []
+    for heat in (EXPLICIT, SECOND):
+        data = slab(core, 0.0, 4, heat=heat, speed=0.0, surface={"flux": {"q": 1e-300}}).resolved() | {"exact": None}
+        data["grid"]["size"], data["bodies"]["body"]["shape"] = [2.0], {"box": {"lower": [0.0], "upper": [2.0]}}
+
+        def warm(scene):
+            x = scene.bodies[0].particles.x[:, 0]
+            scene.bodies[0].thermal.theta[:] = 50 * np.cos(np.pi * x / 2)
+            scene.bodies[0].thermal.c[:, 0] = -25 * np.pi * np.sin(np.pi * x / 2)
+
+        scene, run = core.play(mpm.load(data), warm)
+        assert run.outcome.ok and abs(run.finals["heat_exchanged"]) < 1e-290 and abs(run.finals["heat_total"]) < 1e-10
+        ends.append((scene.bodies[0].particles.x[:, 0], scene.bodies[0].thermal.theta))
+    exact = 50 * np.exp(-((np.pi / 2) ** 2) * END) * np.cos(np.pi * ends[0][0] / 2)
+    assert np.allclose(ends[0][1], ends[1][1], atol=0.3) and np.allclose(ends[1][1], exact, atol=1.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("dimension", [2, "axisymmetric", 3])
+def test_other_dimensions(core, dimension):
+    """A hot box cools between its own and the air's temperature, and keeps its ledger."""
+    experiment = core.experiment(
+        dimension, surfaces=[{"of": "body", "fixed": {"temperature": core.COLD}}], method={"heat": IMPLICIT}, time={"end": 0.2}, output={"every": 0.2}
+    )
+    _, run = core.play(experiment)
+    assert run.outcome.ok and core.COLD < run.finals["temperature_min"] < run.finals["temperature_max"] < core.HOT
+    assert abs(run.finals["heat_ledger"]) < 1e-12 * abs(run.finals["heat_exchanged"])
