@@ -4,7 +4,8 @@
     order 1   backward Euler: gamma = 1                    order 2   Alexander's two stages: gamma = 1 - 1/sqrt(2); both L-stable
 
 C, kappa and radiation's secants are those of the step's start. The step ends with the fluxes at the stage temperatures:
-the heat of the particles changes by exactly what the pieces exchanged, however loose the tolerance; an iterate's residual r only moves heat between nodes, by r/C.
+the heat of the particles changes by exactly what the pieces exchanged, however loose the tolerance; an iterate's residual r
+only moves heat between nodes, by r/C.
 Mirror walls fold in the operator: ghost nodes are no unknowns. Preconditioned by the diagonal of C + gamma dt A.
 Good values  tolerance 1e-9.   Fails when: iterations pass MOST (returned, not hidden).
 """

@@ -104,8 +104,8 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     skies = tuple(float(sky) if isinstance(sky, int | float) else sky for _, _, sky in body.radiation)
     programmes = Programmes(steady, tuple(forcing), skies, zero)
     return System(
-        shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data), max(data),
-        stiff,
+        shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
+        max(data), stiff,
     )  # fmt: skip
 
 
