@@ -41,5 +41,7 @@ def run(
     else:
         for name, value in record.finals.items() if record.status == OK else ():
             say(f"  {name} = {value:.9g}", quiet=quiet)
+        for text in record.facts.get("warnings", ()):
+            say(f"  warning: {text}", quiet=quiet)
         say(f"{folder / 'run.nc'}", quiet=quiet)
     raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 0 if record.status == 0 else 4))
