@@ -17,7 +17,7 @@ def test_what_is_refined(name, path, values):
     assert steps[0] > steps[1] > steps[2]
 
 
-def test_order_is_fitted_and_round_off_has_none():
+def test_order_is_fitted_where_one_is_declared():
     line = Line("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (0.16, 0.04, 0.01), 1.8, 1.0)
     assert line.order() == pytest.approx(2.0)
     assert "| 0.16, 0.04, 0.01 | 2.00 | 1.80 |" in line.text()
