@@ -25,6 +25,7 @@ LAYERS = {
 PEERS = {
     "state": {"outcome"}, "tensors": {"jit"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
+    "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe"},
     "runner": {"verification", "costs"}, "sweep": {"runner", "verification", "costs"},
 }  # fmt: skip
