@@ -14,7 +14,7 @@ KINDS = {
     OVERSTRETCHED: ("overstretched", "dt |grad v| > 1/2 or J outside (1e-3, 1e3)", "lower `time.safety`; a body that tears has left the model"),
     LEFT_GRID: ("left_grid", "a particle left the grid", "enlarge `grid.size`, or close the side with a wall"),
     RETURN_MAP: ("return_map", "the return map did not converge", "check M, p0 and eta: p0 within 1e-3..1e3, K dt/eta within 1e-12..1e12"),
-    STEP_UNDERFLOW: ("step_underflow", "the stable step fell below 1/256 of the first", "the scene stiffens or speeds up without bound: look at velocity.max and J.max"),
+    STEP_UNDERFLOW: ("step_underflow", "the stable step fell below 1/256 of the first", "the scene stiffens or speeds up: look at velocity.max and J.max"),
     ENERGY_GROWTH: ("energy_growth", "energy grows without a source", "lower `time.safety`"),
     MAX_PRINCIPLE: ("max_principle", "a temperature left the bounds of its data", "lower `time.safety` or `method.heat_step`"),
     HEAT_SOLVER: ("heat_solver", "an implicit heat step did not converge", "lower `method.heat_step`, or raise `method.heat.implicit.tolerance`"),

@@ -56,7 +56,7 @@ class Scene:
     step: float | None  # None: automatic
     safety: float
     heat_step: float | None
-    surroundings: tuple = ()  # mpm.heat.surroundings.Surroundings or None, by body
+    surroundings: tuple = ()  # mpm.integrate.surroundings.Surroundings or None, by body
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
     watch: Any = None  # what to record: mpm.observe.Watch

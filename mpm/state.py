@@ -87,7 +87,7 @@ class Thermal(NamedTuple):
 class Surface(NamedTuple):
     """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11).
 
-    What surrounds them (the last five) holds for one heat step: heat/surroundings.py writes it where it changes in time or place.
+    What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
     """
 
     F: np.ndarray  # (N, D, D) total deformation gradient of the particles in the grid's directions: carries areas and offsets (Nanson)

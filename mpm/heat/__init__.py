@@ -2,7 +2,7 @@
 
 local.py     thermal stress, elastic and dissipative heating, temperature rise through enthalpy
 exchange.py  meet(surface, s, theta, ...): every exchange of a piece as beta (outside - theta) + q; radiation by its secant
-programmes.py  temperatures over time        surroundings.py  who acts on which pieces in a heat step; hot walls
+programmes.py  temperatures over time
 surface.py   area_and_offset(space, ...): a surface piece in the current shape
 The heat step itself, which needs transfers and walls too, is integrate/heat_step.py; bodies that do not move are mpm.rigid.
 Absent       Isothermal(), NoExchange(), NoExpansion(), NoHeating(): nothing stored, compiled or computed

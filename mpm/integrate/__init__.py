@@ -3,7 +3,7 @@
 respond.py    a particle's answer to the velocity gradient: strain, flow, stress, heating, and what it scatters next
 heat_step.py  one explicit heat step: scatter, conduct, exchange, gather
 heat_implicit.py  the same by conjugate gradients: any step, any beta
-pieces.py     surface pieces during a heat step
+pieces.py     surface pieces during a heat step; surroundings.py  who acts on which of them, hot walls
 sharpen.py    XPIC's extra transfers
 locking.py    F-bar: changes of volume averaged over the grid
 explicit.py   the mechanical step as the algorithm box of physics.md 4

@@ -4,7 +4,7 @@ import numpy as np
 
 from mpm.heat.exchange import PENALTY
 from mpm.heat.programmes import Sine, bounds
-from mpm.heat.surroundings import Act, HotWall, Surroundings
+from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side
