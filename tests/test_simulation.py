@@ -36,7 +36,7 @@ def neutral(core, dimension):
     a, b = warm.bodies[0].particles, cold.bodies[0].particles
     assert np.ptp(a.J) > 1e-3
     for name in ("x", "v", "C", "B", "J"):
-        assert np.array_equal(getattr(a, name), getattr(b, name)), name
+        assert np.array_equal(getattr(a, name), getattr(b, name)), (name, np.abs(getattr(a, name) - getattr(b, name)).max())
 
 
 def test_physics_left_out_is_neutral(core):
