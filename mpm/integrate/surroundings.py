@@ -1,11 +1,10 @@
 """Who acts on which pieces of a moving body, and when: writes the surroundings of a heat step into its Surface.
 
-Where nothing changes in time or place they are written once. beta is capped at PENALTY kappa/h, in series, so beta = inf is a fixed temperature and the
+Where nothing changes in time or place they are written once. beta is capped at PENALTY kappa/h, so beta = inf is a fixed temperature and the
 answer is monotone in beta. A hot wall replaces whatever else acts on the pieces that touch it: within half a cell of its plane and facing it
 (outward normal within 60 degrees of the wall's).
 """
 
-import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -83,8 +82,8 @@ class Surroundings:
             self.touch(wall, space, body, start, dt)
 
     def cap(self, beta: float) -> float:
-        """beta in series with the penalty."""
-        return self.most if math.isinf(beta) else beta / (1.0 + beta / self.most)
+        """beta, at most the penalty: what is finite and below it acts as it is given."""
+        return min(beta, self.most)
 
     def touch(self, wall: HotWall, space, body, start: float, dt: float) -> None:
         """The pieces at a hot wall exchange with it alone."""

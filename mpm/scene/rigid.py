@@ -48,8 +48,8 @@ def run_rigid(experiment, exact=None, beat=None) -> Run:
     levels = [(at.probe, at.kelvin) for at in found.values()]
     look = Looks(experiment, times, exact)
     field = (lambda x: exact(x + shift, 0.0)) if getattr(exact, "starts", False) else None
-    solved = solve(rigid_bodies(experiment, field), grid.dimension, grid.cell, -shift, experiment.time.end, times, experiment.output.probes, levels, method, beat,
-                   snapshots=(look.times, look.points))  # fmt: skip
+    bodies, end, probes = rigid_bodies(experiment, field), experiment.time.end, experiment.output.probes
+    solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=(look.times, look.points))
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots[: len(solved.times)], shift)

@@ -56,11 +56,12 @@ def test_infinite_beta_is_a_fixed_temperature(core):
 
 
 def test_any_beta_ends_and_cools_more_than_a_smaller_one(core):
+    """Strictly below the penalty of 1000 kappa/h, above which all are a fixed temperature."""
     betas = [0.0, 1e-3, 1e-1, 1.0, 1e1, 1e2, 1e4, 1e6, 1e9, 1e12, INF]
     runs = [core.play(slab(core, beta, 8, heat="auto"))[1] for beta in betas]
     assert all(run.outcome.ok for run in runs)
     mean, low = ([run.finals[name] for run in runs] for name in ("temperature_mean", "temperature_min"))
-    assert np.all(np.diff(mean[:8]) < 0) and np.all(np.diff(mean) <= 1e-9) and min(low) > core.COLD
+    assert np.all(np.diff(mean[:7]) < 0) and np.all(np.diff(mean) <= 1e-9) and min(low) > core.COLD
     assert "heat_steps_implicit" not in runs[3].facts and runs[-1].facts["heat_steps_implicit"] > 0
 
 
