@@ -30,6 +30,7 @@ BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at
 MANY = 8  # explicit heat sub-steps that cost about as much as an implicit step
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
+
 @dataclass(frozen=True)
 class HeatMethod:
     """`kind` auto, explicit or implicit; auto is implicit where a heat step would need more than MANY explicit sub-steps. order 1 or 2 of implicit steps."""
@@ -63,6 +64,7 @@ class Scene:
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
 
+
 class Clock:
     """Counts, limits and accumulated sources of one run."""
 
@@ -70,16 +72,16 @@ class Clock:
         self.time, self.steps, self.heat_steps = 0.0, 0, 0
         self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
-        self.exchanged = self.gross = self.local = self.dissipated = 0.0
+        self.exchanged = self.local = self.dissipated = 0.0
         self.first_step: float | None = None
         self.reports = np.zeros((len(scene.bodies), REPORT))
-        self.reset(scene)
+        self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
             report[SPEED] = float(np.max(np.sum(body.particles.v.astype(float) ** 2, axis=1)))
             report[RATE] = float(np.max(np.abs(body.particles.C)))
             report[SWELL] = float(np.max(body.particles.J))
 
-    def reset(self, scene: Scene) -> None:
+    def reset(self) -> None:
         self.reports[:] = 0.0
         self.reports[:, PARTICLE] = -1
 
@@ -87,8 +89,8 @@ class Clock:
         """After a block: rates from increments, and the heat and dissipation of its steps."""
         self.reports[:, RATE] /= dt
         self.local += float(np.sum(self.reports[:, HEATED]))
-        self.gross += float(np.sum(np.abs(self.reports[:, HEATED])))
         self.dissipated += float(np.sum(self.reports[:, DISSIPATED]))
+
 
 def simulate(scene: Scene, beat=None) -> Run:
     """Run the scene to its end or its failure. `beat(fraction, time) -> bool` is asked between blocks; true stops the run."""
@@ -104,6 +106,7 @@ def simulate(scene: Scene, beat=None) -> Run:
         recorder.record(scene, clock)
     return recorder.run(scene, clock, result, time.perf_counter() - began)
 
+
 def work_arrays(scene: Scene):
     """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, scalars where there is heat."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
@@ -113,6 +116,7 @@ def work_arrays(scene: Scene):
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
     rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else IMPLICIT_ROWS
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
+
 
 def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) -> Outcome:
     """Advance to the output time `end`."""
@@ -130,6 +134,7 @@ def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) ->
             return result
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     return outcome(COMPLETED)
+
 
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
     """One heat step of every body that has heat: explicit in as many sub-steps as the limits ask for, or implicit."""
@@ -153,7 +158,6 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         else:
             gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
         clock.exchanged += gained
-        clock.gross += abs(gained)
         if lost is not None:
             correct(body.thermal, *lost)
     clock.heat_steps += 1
@@ -190,7 +194,7 @@ def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
         if count == 1 and left < step * (1 - 1e-9):
             binding = "heat pace or output"
         clock.bound[binding] = clock.bound.get(binding, 0) + block
-        clock.reset(scene)
+        clock.reset()
         advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, block, clock.reports)
         clock.gather(dt)
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)

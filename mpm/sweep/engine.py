@@ -61,10 +61,6 @@ class Result:
     collected: bool = False
 
 
-class Stop(Exception):
-    """Nothing more can be done; the text says why."""
-
-
 @dataclass
 class Points:
     """The points of a plan by run id: equal points are one."""
