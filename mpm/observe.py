@@ -147,6 +147,8 @@ class Recorder:
                      particles=sum(len(body.particles.m) for body in scene.bodies))  # fmt: skip
         if clock.implicit:
             facts |= {"heat_steps_implicit": clock.implicit, "heat_iterations": clock.iterations}
+        if scene.repair:
+            facts |= {"heat_repaired": clock.repaired, "heat_unrepaired": clock.unrepaired}
         if self.errors is not None:
             finals |= self.errors.finals(np.array(self.times), series)
         finals["steps"] = float(clock.steps or clock.heat_steps)

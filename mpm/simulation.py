@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm.boundary import directions, extents
 from mpm.diagnostics import finite
+from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
@@ -63,6 +64,7 @@ class Scene:
     watch: Any = None  # what to record: mpm.observe.Watch
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
+    repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
 
 
 class Clock:
@@ -73,6 +75,7 @@ class Clock:
         self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
         self.exchanged = self.local = self.dissipated = 0.0
+        self.repaired = self.unrepaired = 0.0
         self.first_step: float | None = None
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
@@ -149,6 +152,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
     for body in scene.bodies:
         lost = lost_to_grid(scene, body, buffers[3])
+        between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
         if implicit:
             order, tolerance = scene.heat.order, scene.heat.tolerance
             gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, order, tolerance, scene.blend, scene.affine)
@@ -160,6 +164,9 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)
+        if between is not None:
+            moved, left = keep_between(scene.space, body, buffers[3], scene.walls, *between)
+            clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
     clock.heat_steps += 1
     if implicit:
         clock.implicit += 1

@@ -72,6 +72,12 @@ class Fbar(Kind):
     kind: ClassVar[str] = "fbar"
 
 
+class Repair(Kind):
+    """What lies beyond the temperatures of body and surroundings is moved to particles that have room for it."""
+
+    kind: ClassVar[str] = "repair"
+
+
 class AutoHeat(Kind):
     """Whichever of the integrators suits the laws."""
 
@@ -115,6 +121,7 @@ class AutoMoving(Kind):
 HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
 LOCKING: tuple[type[Kind], ...] = (Fbar,)
+BOUNDS: tuple[type[Kind], ...] = (Repair,)
 RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
 Transfer = one_of("transfer", *TRANSFERS)
 
@@ -126,6 +133,7 @@ class Method(Model):
     temperature: Transfer = doc(Apic(), description="transfer of temperature")
     gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
     locking: one_of("cure of locking", *LOCKING) | None = doc(None, description="for nearly incompressible bodies that move")
+    bounds: one_of("keeper of bounds", *BOUNDS) | None = doc(None, description="temperatures between those of body and surroundings, for bodies that move")
     precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")

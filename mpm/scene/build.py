@@ -221,6 +221,7 @@ def build(experiment, exact=None) -> Scene:
         blend=blend,
         affine=affine,
         sharp=sharp,
+        repair=experiment.method.bounds is not None,
         times=times,
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,
