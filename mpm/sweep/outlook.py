@@ -12,6 +12,7 @@ from mpm.sweep.store import Store
 
 def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000) -> dict[str, Any]:
     """Points and dimensions of the sweep, which are there, and `estimate` of the first that would run."""
+    from mpm.scene.groups import groups
     from mpm.sweep.cases import plan as plan_of
 
     plan = plan_of(experiment, max_runs=max_runs)
@@ -20,6 +21,7 @@ def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = No
     due = missing(points, lines, rerun)
     first = points.cases[due[0]] if due else plan.cases[0] if plan.cases else None
     cost = importlib.import_module(engine.RUNNER).estimate(first.experiment) if first else {}
+    step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") else None
     return {
         "name": experiment.name,
         "title": experiment.title,
@@ -31,6 +33,7 @@ def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = No
         "due": len(due),
         "dimensions": [dimension(dim) for dim in plan.dims],
         "estimate": cost,
+        "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
         "jobs": jobs,
         "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
         "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
@@ -69,10 +72,23 @@ def said(found: dict[str, Any]) -> str:
     for name, value in cost.items():
         if name not in ("physics", "limits", "binds", "seconds", "memory_bytes", "output_bytes"):
             told.append(f"{name:<9} {said_value(value)}")
+    told += said_groups(found["groups"])
     if "seconds" in cost:
         told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
         told.append(f"memory    {size(cost['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
     return "\n".join(told)
+
+
+def said_groups(groups: list[dict[str, Any]]) -> list[str]:
+    """A line for each dimensionless group: value, meaning, what it says could be dropped."""
+    several = len({group["body"] for group in groups}) > 1
+    lines = ["groups"] if groups else []
+    for group in groups:
+        name = f"{group['name']} of {group['body']}" if several else group["name"]
+        line = f"  {name:<22} {group['value']:<9.3g} {group['formula']}: {group['meaning']}"
+        error = "" if group["error"] is None else f", error about {group['error']:.2g}"
+        lines.append(line + (f"; could drop {group['drop']}{error}" if group["drop"] else ""))
+    return lines
 
 
 def short(value: Any) -> str:
