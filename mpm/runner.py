@@ -1,6 +1,6 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
-run_point(experiment, beat) -> Run      run_points(experiments) -> list of Runs, for material points
+run_point(experiment, beat, compare) -> Run      run_points(experiments) -> list of Runs, for material points
 warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
@@ -13,25 +13,30 @@ from mpm.scene.inventory import physics
 from mpm.state import Run
 
 
-def run_point(experiment, beat=None) -> Run:
-    """Run one point (no sweep). A failure of the model is the Run's outcome; SceneError says that no method here can run the config."""
+def run_point(experiment, beat=None, compare: bool = True) -> Run:
+    """Run one point (no sweep). A failure of the model is the Run's outcome; SceneError says that no method here can run the config.
+
+    compare    False leaves out the errors against the exact solution, which cost time that a run does not need; what starts from it still does
+    """
     from mpm.verification import exact_solution
 
     exact = exact_solution(experiment)
     if experiment.grid.dimension == 0:
         from mpm.scene.point import run_zero
 
-        run = run_zero(experiment, exact, beat)
+        run = run_zero(experiment, exact if compare else None, beat)
     elif experiment.moving:
         from mpm.scene.build import build
         from mpm.scene.scaling import physical
         from mpm.simulation import simulate
 
-        run = physical(simulate(build(experiment, exact), beat), experiment)
+        scene = build(experiment, exact)
+        scene.watch.exact = scene.watch.exact if compare else None
+        run = physical(simulate(scene, beat), experiment)
     else:
         from mpm.scene.rigid import run_rigid
 
-        run = run_rigid(experiment, exact, beat)
+        run = run_rigid(experiment, exact, beat, compare)
     return told(experiment, run)
 
 

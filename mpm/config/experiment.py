@@ -11,6 +11,7 @@ from pydantic import PrivateAttr, model_validator
 from mpm.config.base import Kind, Model, doc
 from mpm.config.bodies import Body
 from mpm.config.boundary import Surface, Wall
+from mpm.config.chart import Chart
 from mpm.config.laws import Constant
 from mpm.config.loading import Stage
 from mpm.config.materials import Material
@@ -20,7 +21,7 @@ from mpm.config.quantities import Acceleration
 from mpm.config.sweep import Sweep
 
 PHYSICS_VERSION = 1
-NOT_KEYED = ("title", "sweep", "smoke")  # cannot change the result of a point
+NOT_KEYED = ("title", "sweep", "smoke", "chart")  # cannot change the result of a point
 
 
 class Experiment(Model):
@@ -39,6 +40,7 @@ class Experiment(Model):
     output: Output = Output()
     exact: Exact | None = doc(None, description="exact solution that the run is compared with")
     sweep: Sweep | None = doc(None, description="what varies")
+    chart: Chart | None = doc(None, description="speed against accuracy: methods and resolutions of `mpm chart`")
     smoke: dict[str, Any] | None = doc(None, description="path: value, applied by --smoke to make the run coarse and short")
 
     _source: str = PrivateAttr("")
@@ -126,7 +128,7 @@ class Experiment(Model):
         for section, name in (("output", "every"), ("method", "offset")):
             if name in self._derived:
                 data[section].pop(name)
-        return {**data, "sweep": None, "smoke": None}
+        return {**data, "sweep": None, "smoke": None, "chart": None}
 
 
 def plain(value: Any, defaults: bool = True) -> Any:

@@ -37,17 +37,24 @@ def skipped(plan: Any) -> int:
     return total - len(plan.cases)
 
 
-def execute(experiment: Any, out: Path | None = None, options: Options | None = None, reporter: Reporter | None = None, max_runs: int = 10_000) -> Result:
-    """Run what is missing of a sweep, then collect. Nothing is written before the whole plan is valid."""
-    from mpm.sweep.cases import plan as plan_of
+def planned(experiment: Any, kind: str = "sweep", max_runs: int = 10_000) -> Any:
+    """The points of a `sweep`, or of a `chart` (sweep/settings.py)."""
+    from mpm.sweep import cases, settings
 
+    return {"sweep": cases, "chart": settings}[kind].plan(experiment, max_runs=max_runs)
+
+
+def execute(
+    experiment: Any, out: Path | None = None, options: Options | None = None, reporter: Reporter | None = None, max_runs: int = 10_000, kind: str = "sweep"
+) -> Result:
+    """Run what is missing of a sweep, then collect. Nothing is written before the whole plan is valid. `kind` as in `planned`."""
     options, reporter = options or Options(), reporter or Reporter()
     began = time.monotonic()
-    plan = plan_of(experiment, max_runs=max_runs)
+    plan = planned(experiment, kind, max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
     store.out.mkdir(parents=True, exist_ok=True)
     with Lock(store.out):
-        store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"))
+        store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"), kind=kind)
         lines, damaged = store.lines(list(points.cases))
         for run_id in damaged:
             reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
@@ -118,13 +125,12 @@ def signals(heard: Callable[[str], None]) -> Iterator[None]:
 def folder_plan(out: Path) -> tuple[Store, Any, dict, dict[str, dict], list[str]]:
     """A sweep's folder, read back: store, plan, experiment.json, lines, damaged ids."""
     from mpm.config import load
-    from mpm.sweep.cases import plan as plan_of
 
     store = Store(out)
     about = store.experiment()
     if about is None:
         raise Refused(f"{out} holds no sweep (there is no experiment.json); give the folder that `mpm sweep` wrote")
-    plan = plan_of(load(about["resolved"]), max_runs=10**9)
+    plan = planned(load(about["resolved"]), about.get("plan", "sweep"), 10**9)
     lines, damaged = store.lines(list({case.run_id: None for case in plan.cases}))
     return store, plan, about, lines, damaged
 

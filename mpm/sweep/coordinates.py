@@ -41,7 +41,8 @@ def fixed(plan: Any, swept: list[str], taken: set[str]) -> dict[str, Array]:
     names, resolved, rows = Names(experiment), experiment.resolved(), {}
     for path, slot in names.slots.items():
         name, value = names.spoken[path], at(resolved, path)
-        if slot.quantity and path[0] != "output" and isinstance(value, int | float | str) and name not in swept:
+        varies = any(name == one or name.startswith(one + ".") for one in swept)
+        if slot.quantity and path[0] != "output" and isinstance(value, int | float | str) and not varies:
             number = math.inf if value == ".inf" else value
             if isinstance(number, int | float) and not isinstance(path[-1], int):
                 rows[name] = (float(number), slot)

@@ -79,7 +79,7 @@ class Store:
         except ValueError as error:
             raise Refused(f"{self.out / 'experiment.json'} is damaged ({error}); move it away, the points beside it are kept and found again") from None
 
-    def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool) -> None:
+    def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep") -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.
 
         Other values on the axes, or another set of axes, are the same experiment: points are shared by id. A folder that held a
@@ -95,10 +95,11 @@ class Store:
             "resolved": experiment.resolved(),
             "source": experiment.source,
             "versions": versions(),
-        }
+        } | ({"plan": kind} if kind != "sweep" else {})
         old = self.experiment()
         if old is not None:
             changed = differences(old["key"], new["key"], {*old["swept"], *swept})
+            changed += [f"plan: {old.get('plan', 'sweep')} -> {kind}"] if old.get("plan", "sweep") != kind else []
             if changed and not take_over and not (old["smoke"] and not smoke):
                 listed = "\n".join(f"  {line}" for line in changed[:12]) + (f"\n  and {len(changed) - 12} more" if len(changed) > 12 else "")
                 raise Refused(

@@ -1,0 +1,82 @@
+"""mpm chart: speed against accuracy over methods and resolutions."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from mpm_cli.options import Jobs, Json, MaxRuns, Quiet, Set, limit, load
+from mpm_cli.progress import reporter
+from mpm_cli.talk import document, internal, say
+
+Configs = Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="YAML files of experiments.", show_default=False)]
+Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", help="Folder for results.  [default: results/<config name>-chart]", show_default=False)]
+BESIDE = "Another program, timed in every round; it prints JSON lines {peer, seconds, error}."
+Peer = Annotated[list[str] | None, typer.Option(metavar="NAME=COMMAND", help=BESIDE, show_default=False)]
+
+
+def chart(
+    configs: Configs,
+    out: Out = None,
+    jobs: Jobs = "auto",
+    set_: Set = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Three places a path, and no timing of compilation: under two minutes.")] = False,
+    peer: Peer = None,
+    timeout: Annotated[float | None, limit("Stop a setting after this long: 90, 90s, 5min, 2h.")] = None,
+    max_runs: MaxRuns = 10_000,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Speed against accuracy: error, time and the Pareto front over methods and resolutions.
+
+    Of the config's `chart:`, else of its sweep's numerical axes, else the usual methods of its physics; against `exact:`, else a Richardson limit.
+    Writes OUT/chart.nc and OUT/chart.png, and says the cheapest setting for 10 %, 1 % and 0.1 %. The same command again goes on.
+    """
+    if out is not None and len(configs) > 1:
+        raise typer.BadParameter("--out holds one chart; leave it out for several configs")
+    peers = dict(pair.split("=", 1) for pair in peer or [] if "=" in pair)
+    if len(peers) != len(peer or []):
+        raise typer.BadParameter("--peer: say NAME=COMMAND")
+    codes, told = [], []
+    for config in configs:
+        found = one(config, out, jobs, set_, quick, peers, timeout, max_runs, as_json, quiet)
+        codes.append(found["exit_code"])
+        told.append(found)
+    if as_json:
+        document(told if len(told) > 1 else told[0])
+    raise typer.Exit(max(codes))
+
+
+def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, peers: dict, timeout: Any, max_runs: int, as_json: bool, quiet: bool) -> dict[str, Any]:
+    """The chart of one config."""
+    from mpm.study.chart import chart as draw_up
+    from mpm.study.chart import with_chart
+    from mpm.sweep.engine import Options
+
+    experiment = with_chart(load(config, set_), quick)
+    folder = out or Path("results") / f"{experiment.name}-chart{'-quick' if quick else ''}"
+    result = draw_up(experiment, folder, Options(jobs, timeout), lambda: reporter(as_json, quiet), peers, cold=not quick, max_runs=max_runs)
+    picture = draw(result) if not result.stopped else None
+    for line in result.sentences:
+        say(line, as_json, quiet)
+    if result.stopped:
+        say(f"stopped ({result.stopped}); the same command goes on", as_json, False)
+    else:
+        say(f"{result.dataset}\n{picture}", as_json, quiet)
+    files = {"out": folder, "dataset": result.dataset, "picture": picture}
+    return {**files, "answer": result.sentences, "counts": result.counts, "stopped": result.stopped or None, "exit_code": result.exit_code}
+
+
+def draw(result: Any) -> Path | None:
+    """OUT/chart.png."""
+    import xarray
+
+    from mpm.plots.chart import speed_accuracy
+
+    picture = result.out / "chart.png"
+    try:
+        with xarray.open_dataset(result.dataset, engine="h5netcdf") as data:
+            speed_accuracy(data.load(), picture)
+    except Exception as error:  # the results are there and sound; a figure that fails is told, and does not hide them
+        internal(error, "the figure failed")
+        return None
+    return picture

@@ -1,0 +1,208 @@
+"""Speed against accuracy (`mpm chart`): error against time over methods and resolutions, for one config.
+
+    with_chart(experiment) -> experiment     its own `chart:`, else one from its sweep, else the usual methods of its physics (study/menu.py)
+    chart(experiment, out, ...) -> Charted   the settings as a sweep (OUT/sweep.nc: errors, outcomes), then rounds of timing, then OUT/chart.nc
+Both halves go on where they were interrupted. A setting that fails is a point without an error, with its reason.
+
+Error   of the finals that `chart.error` names, the largest. Relative ones as they are; those in kelvin (metres, ...) over `chart.scale`, unless given the
+        range of temperatures in the most accurate run. Without `exact`: of `chart.observables` against their limit (study/richardson.py), with its own error.
+Time    the smallest of the rounds' processor times of a run, set-up included, without the comparison with the exact solution (study/timing.py)
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm.records.netcdf import Array, Group, seal, to_bytes, write_whole
+from mpm.records.provenance import git_revision, machine, versions
+from mpm.records.variables import OK
+from mpm.study.front import TOLERANCES, cheapest, pareto, sentence
+from mpm.study.timing import Timings, compiled, timed
+from mpm.sweep.report import Reporter
+
+RELATIVE = ("error_displacement", "error_velocity", "error_stress", "error_temperature", "error_relative", "error_frequency", "error_damping")
+KEPT = ("status", "error", "outcome", "run_id", "steps")
+
+
+@dataclass
+class Charted:
+    """What a chart came to: its folder, the dataset's path, sentences, counts by status, and why it stopped early."""
+
+    out: Path
+    dataset: Path
+    sentences: list[str]
+    counts: dict[str, int]
+    exit_code: int
+    stopped: str = ""
+
+
+def with_chart(experiment: Any, quick: bool = False) -> Any:
+    """The experiment with a chart; `quick` keeps the three coarsest places of each path."""
+    from mpm.config import load
+    from mpm.config.experiment import plain
+    from mpm.study.menu import usual
+
+    wanted = plain(experiment.chart) if experiment.chart is not None else {}
+    if not wanted.get("methods"):
+        wanted |= {name: value for name, value in usual(experiment).items() if name == "methods" or not wanted.get(name)}
+    if quick:
+        wanted["refine"] = shortened(wanted.get("refine") or {})
+        for line in wanted["methods"].values():
+            line["refine"] = shortened(line["refine"]) if line.get("refine") else None
+    made = load(experiment.template() | {"chart": wanted})
+    made._source, made._path = experiment._source, experiment._path
+    return made
+
+
+def shortened(paths: dict[str, dict[str, Any]], most: int = 3) -> dict[str, dict[str, Any]]:
+    return {path: {name: list(values)[:most] for name, values in refined.items()} for path, refined in paths.items()}
+
+
+def chart(
+    experiment: Any, out: Path, options: Any, reporters: Any = Reporter, peers: dict[str, str] | None = None, cold: bool = True, max_runs: int = 10_000
+) -> Charted:
+    """Run what is missing of a chart and write OUT/chart.nc. `reporters()` makes a reporter for each of the two halves; `cold`: time compiling, too."""
+    from mpm.study.timing import Stopped
+    from mpm.sweep.api import execute, planned, signals, tree_of
+
+    result = execute(experiment, out, options, reporters(), max_runs, kind="chart")
+    if result.stopped:
+        return Charted(out, out / "chart.nc", [], result.counts, result.exit_code, result.stopped)
+    plan = planned(experiment, "chart", max_runs)
+    tree = tree_of(out / "sweep.nc")
+    ok = {case.run_id: case for case in plan.cases if result.lines[case.run_id]["status"] == OK}
+    halt: list[str] = []
+    reporter, path = reporters(), out / "timing.json"
+    try:
+        with signals(halt.append):
+            labels = {run_id: name(case.values) for run_id, case in ok.items()}
+            points = {run_id: case.experiment for run_id, case in ok.items()}
+            timings = timed(points, labels, experiment.chart.repeats, path, reporter, peers or {}, lambda: bool(halt))
+            if cold:
+                timings = compiled({case.values["method"]: case.experiment for case in reversed(ok.values())}, path, reporter, lambda: bool(halt))
+    except Stopped:
+        return Charted(out, out / "chart.nc", [], result.counts, {"terminated": 143}.get(halt[0], 130), halt[0])
+    finally:
+        reporter.close()
+    variables, said = assemble(experiment, plan, tree, timings)
+    attributes = {
+        "Conventions": "CF-1.11",
+        "title": experiment.title or experiment.name,
+        "name": experiment.name,
+        "config": experiment.source,
+        "config_resolved": experiment.resolved(),
+        "answer": "\n".join(said),
+        "versions": versions(),
+        "git_revision": git_revision(),
+        "machine": machine(),
+    }
+    write_whole(out / "chart.nc", seal(to_bytes({"/": Group(variables)}, attributes), {"settings": len(plan.cases)}))
+    return Charted(out, out / "chart.nc", said, result.counts, result.exit_code)
+
+
+def name(values: dict[str, Any]) -> str:
+    """A setting in words: `APIC, cell 0.125, step 0.01`."""
+    from mpm.config.vary import label
+
+    numbers = {path.rsplit(".", 1)[-1]: value for path, value in values.items() if isinstance(value, float | int)}
+    return ", ".join([values["method"], *(f"{word} {label(value)}" for word, value in numbers.items())])
+
+
+def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[dict[str, Array], list[str]]:
+    """The variables of chart.nc, and the answer in sentences."""
+    root, rows = tree.to_dataset(), [case.run_id for case in plan.cases]
+    rounds = timings.rounds[: experiment.chart.repeats]
+    error, largest, about = errors(experiment, tree)
+    cpu, wall = (np.array([[one[kind].get(run_id, np.nan) for one in rounds] for run_id in rows]) for kind in ("cpu", "wall"))
+    variables = {key: Array(root[key].dims, root[key].values, dict(root[key].attrs)) for key in root.variables if root[key].dims == ("setting",)}
+    variables = {key: array for key, array in variables.items() if key in root.coords or key in KEPT or key.startswith("error")}
+    names = [name(case.values) for case in plan.cases]
+    variables["label"] = Array(("setting",), np.array(names, dtype=object), {"long_name": "setting in words"})
+    put = variables.__setitem__
+    put("relative_error", Array(("setting",), error, {"units": "1", "long_name": f"error, {about}", "reference_error": reference_error(experiment, tree)}))
+    if largest is not None:
+        put("relative_error_max", Array(("setting",), largest, {"units": "1", "long_name": "largest error, over the same scale"}))
+    for kind, data, words in (("cpu", cpu, "processor time"), ("wall", wall, "wall time")):
+        put(f"{kind}_time", Array(("setting", "round"), data, {"units": "s", "long_name": f"{words} of a run, set-up included, comparison left out"}))
+        put(f"{kind}_min", Array(("setting",), least(data, np.min), {"units": "s", "long_name": f"smallest {words} of the rounds"}))
+        put(f"{kind}_median", Array(("setting",), least(data, np.median), {"units": "s", "long_name": f"median {words} of the rounds"}))
+    put("load", Array(("round",), np.array([one["load"] for one in rounds]), {"units": "1", "long_name": "load average of the machine as the round began"}))
+    put("runs", Array(("setting",), np.array([timings.number.get(run_id, 0) for run_id in rows]), {"units": "1", "long_name": "runs in a timing"}))
+    cold = np.array([timings.compiling.get(case.values["method"], np.nan) for case in plan.cases])
+    put("compiling", Array(("setting",), cold, {"units": "s", "long_name": "processor time of import, compilation and one run, empty cache, of the method"}))
+    front = pareto(error, variables["cpu_min"].data)
+    put("front", Array(("setting",), front.astype(np.int8), {"units": "1", "long_name": "1 where no other setting has less error in less time"}))
+    variables |= peers(rounds, scale_of(experiment, tree))
+    least_time, median = variables["cpu_min"].data, variables["cpu_median"].data
+    return variables, [sentence(cheapest(error, least_time, median, tolerance), names, error, least_time, median) for tolerance in TOLERANCES]
+
+
+def least(data: np.ndarray, how) -> np.ndarray:
+    """A number a setting from its rounds; NaN where it was not timed."""
+    return np.array([how(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in data])
+
+
+def peers(rounds: list[dict], scale: float) -> dict[str, Array]:
+    """What other programs reached: the smallest and the median time of each of their lines over the rounds."""
+    found: dict[tuple[str, int], list[dict]] = {}
+    for one in rounds:
+        for peer, rows in one["peers"].items():
+            for k, row in enumerate(rows):
+                found.setdefault((peer, k), []).append(row)
+    found = {key: rows for key, rows in found.items() if "failed" not in rows[0]}
+    if not found:
+        return {}
+    seconds = [[row.get("cpu", row["seconds"]) for row in rows if "failed" not in row] for rows in found.values()]
+    said = {"long_name": "processor time where the program says it, else wall time", "units": "s"}
+    firsts = [rows[0] for rows in found.values()]
+    return {
+        "peer": Array(("peer_setting",), np.array([first.get("peer", key[0]) for first, key in zip(firsts, found, strict=True)], dtype=object), {}),
+        "peer_label": Array(("peer_setting",), np.array([json.dumps({k: v for k, v in first.items() if k != "peer"}) for first in firsts], dtype=object), {}),
+        "peer_error": Array(("peer_setting",), np.array([first["error"] for first in firsts]) / scale, {"long_name": "error over the same scale"}),
+        "peer_min": Array(("peer_setting",), np.array([min(row) for row in seconds]), said),
+        "peer_median": Array(("peer_setting",), np.array([float(np.median(row)) for row in seconds]), said),
+    }
+
+
+def errors(experiment: Any, tree: Any) -> tuple[np.ndarray, np.ndarray | None, str]:
+    """(relative error, largest relative error or None, what it is) of every setting."""
+    root, wanted = tree.to_dataset(), experiment.chart.error
+    if not wanted and experiment.exact is None:
+        from mpm.study.richardson import against_limit
+
+        return against_limit(experiment, root, scale_of(experiment, tree))[0], None, "against the limit by Richardson extrapolation"
+    wanted = wanted or next(([key] for key in ("error_displacement", "error_relative", "error_l2") if key in root), [])
+    missing = [key for key in wanted if key not in root]
+    if missing or not wanted:
+        there = ", ".join(key for key in root.data_vars if key.startswith("error_"))
+        raise ValueError(f"chart.error: no run has {', '.join(missing) or 'an error'}; there are {there or 'none'}")
+    scale = 1.0 if all(key in RELATIVE for key in wanted) else scale_of(experiment, tree)
+    ok = root.status.values == OK
+    found = np.max([np.abs(root[key].values) / (1.0 if key in RELATIVE else scale) for key in wanted], axis=0)
+    most = root["error_max"].values / scale if wanted == ["error_l2"] or wanted == ("error_l2",) else None
+    said = " and ".join(root[key].attrs.get("long_name", key) for key in wanted) + ("" if scale == 1.0 else f", over {scale:.4g}")
+    return np.where(ok, found, np.nan), most, said
+
+
+def scale_of(experiment: Any, tree: Any) -> float:
+    """What counts as 100 %."""
+    if experiment.chart.scale is not None:
+        return experiment.chart.scale
+    series, root = tree["series"].to_dataset(), tree.to_dataset()
+    if "temperature_max" not in series:
+        return 1.0
+    row = int(np.nanargmin(root["error_l2"].values)) if "error_l2" in root and np.isfinite(root["error_l2"].values).any() else -1
+    spread = np.nanmax(series["temperature_max"].values[row]) - np.nanmin(series["temperature_min"].values[row])
+    return float(spread) if spread > 0 else 1.0
+
+
+def reference_error(experiment: Any, tree: Any) -> float:
+    """The error of the reference itself: zero for an exact solution."""
+    if experiment.exact is not None or experiment.chart.error:
+        return 0.0
+    from mpm.study.richardson import against_limit
+
+    return against_limit(experiment, tree.to_dataset(), scale_of(experiment, tree))[1]
