@@ -8,8 +8,8 @@ To add   a kind: a class with `kind = "name"`, listed in its menu. Paths, errors
 """
 
 from mpm.config.experiment import PHYSICS_VERSION, Experiment
-from mpm.config.load import load
+from mpm.config.load import load, restore
 from mpm.config.problems import ConfigError, Problem
 from mpm.config.schema import schema
 
-__all__ = ["PHYSICS_VERSION", "ConfigError", "Experiment", "Problem", "load", "schema"]
+__all__ = ["PHYSICS_VERSION", "ConfigError", "Experiment", "Problem", "load", "restore", "schema"]

@@ -53,6 +53,11 @@ def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None =
     return experiment
 
 
+def restore(resolved: dict[str, Any]) -> Experiment:
+    """An experiment from its own `resolved()` form: checked before, so types are read again, and nothing is said about places."""
+    return Experiment.model_validate(resolved)
+
+
 def gather(source: str | File | dict[str, Any], found: list[Problem]) -> tuple[Node | None, str, File | None]:
     """Nodes, text and path of a source with all that it extends."""
     if isinstance(source, dict):
@@ -208,4 +213,4 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
     return experiment, problems(root, found)
 
 
-__all__ = ["GREEK", "load", "shown"]
+__all__ = ["GREEK", "load", "restore", "shown"]

@@ -39,14 +39,15 @@ def collect(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> boo
 
 def assemble(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> bytes:
     """The bytes of the dataset."""
-    fits = sum(store.path(run_id).stat().st_size for run_id in lines) <= LIMIT
+    fits = store.bytes(lines) <= LIMIT
     records: dict[str, Any] = {}
     damaged: dict[str, str] = {}
-    for run_id in lines:
-        try:
-            records[run_id] = store.load(run_id, fields=fits)
-        except DamagedFile:
-            damaged[run_id] = f"pending: {run_id}.nc is damaged; the next sweep runs the point again"
+    for run_id, record in store.load_all(list(lines), fields=fits):
+        if isinstance(record, DamagedFile):
+            file = store.path(store.places([run_id])[run_id]).relative_to(store.out)
+            damaged[run_id] = f"pending: {file} is damaged; `mpm verify` sets it aside, and the next sweep runs the point again"
+        else:
+            records[run_id] = record
     return dataset(plan, about, records, damaged, None if fits else {run_id: str(store.path(run_id).relative_to(store.out)) for run_id in records})
 
 

@@ -11,13 +11,14 @@ Signals   first Ctrl-C: finish what runs, collect; second: stop now. SIGTERM: st
 import math
 import time
 from collections import Counter, deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, OK, STATUS, TIMEOUT
-from mpm.sweep.executors import Beat, Cancelled, Done, Event, Executor, Lost, Task, Unwritten
+from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
+from mpm.sweep.pace import Pace
 from mpm.sweep.report import Reporter, label
 from mpm.sweep.store import Store
 
@@ -90,6 +91,16 @@ def missing(points: Points, lines: dict[str, dict], rerun: str | None) -> list[s
     return [run_id for run_id in points.cases if due(run_id)]
 
 
+@dataclass
+class Running:
+    """A task that a worker has."""
+
+    task: Task
+    start: float  # monotonic [s]
+    asked: float = math.nan  # when it was asked to stop; infinite once it was killed
+    fraction: float = 0.0
+
+
 class Engine:
     """One pass over the points that are due."""
 
@@ -97,10 +108,10 @@ class Engine:
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
         self.partial = partial  # collects what is there; called now and then
         self.due: deque[str] = deque(missing(points, lines, options.rerun))
-        self.running: dict[str, float] = {}  # run id -> start (monotonic)
-        self.fractions: dict[str, float] = {}
+        self.alone: set[str] = set()  # points that died, or were in a batch that died or overran
+        self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
-        self.asked: dict[str, float] = {}  # run id -> when it was asked to stop
+        self.pace, self.number = Pace(), store.next_number()
         self.failures = self.ran = self.signals = 0
         self.stopped = self.broken = ""
         self.began = self.collected = time.monotonic()
@@ -112,6 +123,11 @@ class Engine:
         self.signals += 2 if kind == "terminated" else 1
         self.stopped = kind
 
+    @property
+    def leaving(self) -> bool:
+        """Whether what runs is given up: after any stop but a first Ctrl-C."""
+        return bool(self.stopped) and (self.signals > 1 or self.stopped != "interrupted")
+
     def run(self, executor: Executor) -> None:
         """Until every due point has a record, or something stops the sweep."""
         self.executor = executor
@@ -120,80 +136,102 @@ class Engine:
                 executor.wanted = len(self.running) + (0 if self.stopped else len(self.due))
                 while executor.free and self.due and not self.stopped:
                     self.hand_out(executor)
-                if self.stopped and (self.signals > 1 or self.stopped != "interrupted"):
+                if self.leaving:
                     break
                 for event in executor.poll(POLL):
                     self.hear(event)
                 self.look_at_the_clock()
         finally:
             executor.close()
-        for run_id in list(self.running):  # stopped, but a record may have reached the disk before its news reached us
-            self.leave(run_id)
-            self.news(run_id)
+        for gone in list(self.running.values()):  # stopped, but records may have reached the disk before their news reached us
+            self.news(gone.task)
+        self.running.clear()
 
     def hand_out(self, executor: Executor) -> None:
-        """Start the next point."""
-        run_id = self.due.popleft()
-        self.attempts[run_id] += 1
-        self.running[run_id] = time.monotonic()
-        executor.submit(Task(run_id, self.points.cases[run_id].experiment.resolved(), str(self.store.out), self.attempts[run_id]))
+        """Start the next point, or the next few where they are tiny."""
+        run_ids = [self.due.popleft()]
+        size = 1 if run_ids[0] in self.alone else self.pace.batch(len(self.due) + 1, len(self.running) + executor.free)
+        if self.options.max_failures is not None:
+            size = min(size, self.options.max_failures - self.failures)  # none runs after the last failure that is allowed
+        while len(run_ids) < size and self.due and self.due[0] not in self.alone:
+            run_ids.append(self.due.popleft())
+        self.attempts.update(run_ids)
+        jobs = tuple(Job(run_id, self.points.cases[run_id].experiment.resolved(), self.attempts[run_id]) for run_id in run_ids)
+        task = Task(jobs, str(self.store.out), self.number)
+        self.number += len(jobs) > 1
+        self.running[task.id] = Running(task, time.monotonic())
+        executor.submit(task)
 
     def hear(self, event: Event) -> None:
         """One event of the executor."""
         if isinstance(event, Beat):
             self.heed(event)
+        elif isinstance(event, Note):
+            self.reporter.note(event.text)
+        elif (gone := self.running.pop(event.task, None)) is None:
+            return  # told twice, as a cluster may
         elif isinstance(event, Done):
-            self.leave(event.run_id)
-            self.finish(event.run_id, event.line)
+            self.done(gone, event)
         elif isinstance(event, Lost):
-            asked = self.leave(event.run_id)
-            self.lost(event.run_id, f"no answer after {self.options.timeout:g} s" if asked else event.why, TIMEOUT if asked else KILLED)
-        elif isinstance(event, Cancelled):
-            self.leave(event.run_id)
-        elif isinstance(event, Unwritten):
-            self.leave(event.run_id)
+            self.lost(gone, event.why)
+        else:
             self.stopped = self.stopped or "broken"
             self.broken = f"{event.why}; finished points are kept, run the same command again when there is room"
-        else:
-            self.reporter.note(event.text)
 
     def heed(self, beat: Beat) -> None:
-        """A point is alive. (`Serial` calls this from inside the point, so it must also keep the clock.)"""
-        self.fractions[beat.run_id] = beat.fraction
+        """A task is alive. (`Serial` calls this from inside the point, so it must also keep the clock.)"""
+        if (at := self.running.get(beat.task)) is not None and len(at.task.jobs) == 1:
+            at.fraction = beat.fraction
         self.look_at_the_clock()
 
-    def leave(self, run_id: str) -> bool:
-        """A point runs no more; whether it had been asked to stop."""
-        self.running.pop(run_id, None)
-        self.fractions.pop(run_id, None)
-        return self.asked.pop(run_id, None) is not None
+    def done(self, gone: Running, event: Done) -> None:
+        """A task is over: its records count, and what it left is due again, point by point."""
+        if event.lines:
+            self.pace.heard(time.monotonic() - gone.start, len(event.lines))
+        for line in event.lines:
+            self.finish(line)
+        self.again(event.left)
 
-    def news(self, run_id: str) -> bool:
-        """Whether the disk has a record of this point that we have not heard of; if so it counts."""
-        found, _ = self.store.lines([run_id])
-        if not found or found[run_id] == self.lines.get(run_id):
-            return False
-        self.finish(run_id, found[run_id])
-        return True
+    def again(self, run_ids: Iterable[str]) -> None:
+        """Points that ran in vain, through no fault that is known to be theirs: next, alone, and not as another attempt."""
+        for run_id in reversed(list(run_ids)):
+            self.attempts[run_id] -= 1
+            self.alone.add(run_id)
+            self.due.appendleft(run_id)
 
-    def lost(self, run_id: str, why: str, status: int) -> None:
-        """The worker died under a point: the engine writes its record, unless the worker still had."""
+    def news(self, task: Task) -> list[str]:
+        """Count what the disk has of a task that we have not heard of; the points of which it has nothing."""
+        run_ids = [job.run_id for job in task.jobs]
+        found, _ = self.store.lines(run_ids)
+        fresh = {run_id: line for run_id, line in found.items() if line != self.lines.get(run_id)}
+        for line in fresh.values():
+            self.finish(line)
+        return [run_id for run_id in run_ids if run_id not in fresh]
+
+    def lost(self, gone: Running, why: str) -> None:
+        """The worker died under a task: the engine writes the record of a point that was alone, unless the worker still had."""
         from mpm.records.point import Record
 
-        if self.news(run_id):
+        asked = not math.isnan(gone.asked)
+        status, why = (TIMEOUT, f"no answer after {self.options.timeout:g} s") if asked else (KILLED, why)
+        missed = self.news(gone.task)
+        if len(gone.task.jobs) > 1:
+            self.again(missed)
             return
-        record = Record(run_id, status, f"{STATUS[status]}: {why}", attempts=self.attempts[run_id], source=source_hash(), finished=now())
-        self.store.save(record)
-        self.finish(run_id, record.line)
+        for run_id in missed:
+            record = Record(run_id, status, f"{STATUS[status]}: {why}", attempts=self.attempts[run_id], source=source_hash(), finished=now())
+            self.store.save(record)
+            self.finish(record.line)
 
-    def finish(self, run_id: str, line: dict) -> None:
+    def finish(self, line: dict) -> None:
         """A record is on disk: count it, or try the point again."""
-        status = line["status"]
+        run_id, status = line["run_id"], line["status"]
         self.lines[run_id] = line
         self.ran += 1
         retries = self.options.retries if self.options.retries is not None else {KILLED: KILLED_AGAIN}.get(status, 0)
         again = status in (KILLED, TIMEOUT) and self.attempts[run_id] <= retries and not self.stopped
         if again:
+            self.alone.add(run_id)
             self.due.append(run_id)
         self.failures += status != OK and not again
         self.reporter.finished(label(self.points.cases[run_id]), line, again)
@@ -205,17 +243,16 @@ class Engine:
         clock, options = time.monotonic(), self.options
         if options.time_budget is not None and clock - self.began > options.time_budget and not self.stopped:
             self.stopped = "budget"
-        if self.stopped and (self.signals > 1 or self.stopped != "interrupted"):
-            for run_id in self.running:
-                self.executor.cancel(run_id, "cancel")
-        for run_id, start in self.running.items():
-            if options.timeout is not None and clock - start > options.timeout and run_id not in self.asked:
-                self.asked[run_id] = clock
-                self.executor.cancel(run_id, "timeout")
-            elif run_id in self.asked and clock - self.asked[run_id] > GRACE:
-                self.asked[run_id] = math.inf
-                self.executor.kill(run_id)
-        self.reporter.beat({run_id: self.fractions.get(run_id, 0.0) for run_id in self.running})
+        for task, at in self.running.items():
+            if self.leaving:
+                self.executor.cancel(task, "cancel")
+            elif options.timeout is not None and clock - at.start > options.timeout and math.isnan(at.asked):
+                at.asked = clock
+                self.executor.cancel(task, "timeout" if len(at.task.jobs) == 1 else "cancel")
+            elif clock - at.asked > GRACE:
+                at.asked = math.inf
+                self.executor.kill(task, "")
+        self.reporter.beat({task: at.fraction for task, at in self.running.items()})
         if clock - self.collected > max(COLLECT, 20 * self.cost) and self.ran:
             self.partial()
             self.collected = time.monotonic()

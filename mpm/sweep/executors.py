@@ -1,9 +1,9 @@
 """Executors: where points run. One interface, so that a cluster can stand beside `Serial` and `Processes`.
 
-    submit(task)            start a point; only while `free` > 0
-    poll(timeout) -> list   what happened since: Started, Beat, Done, Cancelled, Lost, Unwritten, Note; returns early when something did
-    cancel(run_id, why)     ask a point to stop at its next beat: "timeout" keeps what it has as a record, "cancel" keeps nothing
-    kill(run_id)            end it now; `Lost` follows
+    submit(task)            start a task, one point or a batch of tiny ones; only while `free` > 0
+    poll(timeout) -> list   what happened since: Beat, Done, Lost, Unwritten, Note; returns early when something did
+    cancel(task, why)       ask a task, by its id, to stop at its next beat: "timeout" keeps what the point has as a record, "cancel" keeps nothing of it
+    kill(task, why)         end it now; `Lost` follows
     close()                 end all workers
 
 An executor knows nothing of retries, order or progress: that is the engine's.
@@ -19,19 +19,42 @@ class BrokenWorkers(Exception):
 
 
 @dataclass(frozen=True)
-class Task:
-    """A point to run: its config as plain JSON, and where its record goes."""
+class Job:
+    """A point to run: its config as plain JSON."""
 
     run_id: str
     config: dict
-    out: str
     attempt: int = 1
 
 
 @dataclass(frozen=True)
-class Beat:
-    """A point is alive; fraction done, simulated time [s]."""
+class Task:
+    """What a worker takes at once: one point, or a batch of tiny ones whose records share a file, `number`. `out` is where records go."""
 
+    jobs: tuple[Job, ...]
+    out: str
+    number: int = 0
+
+    @property
+    def id(self) -> str:
+        """Its first point's run id: no point is in two tasks at once."""
+        return self.jobs[0].run_id
+
+    def message(self) -> dict:
+        """As plain JSON."""
+        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "number": self.number}
+
+    @classmethod
+    def of(cls, message: dict) -> "Task":
+        """From `message()`."""
+        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["number"])
+
+
+@dataclass(frozen=True)
+class Beat:
+    """A task is alive; the point that runs, its fraction done, its simulated time [s]."""
+
+    task: str
     run_id: str
     fraction: float
     time: float
@@ -39,32 +62,26 @@ class Beat:
 
 @dataclass(frozen=True)
 class Done:
-    """A point's record is on disk; `line` is its summary."""
+    """A task is over: the summaries of the records that are on disk now, and the points that stopped as asked and left none."""
 
-    run_id: str
-    line: dict
-
-
-@dataclass(frozen=True)
-class Cancelled:
-    """A point stopped as asked and left no record."""
-
-    run_id: str
+    task: str
+    lines: tuple[dict, ...]
+    left: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Lost:
-    """The worker died with this point."""
+    """The worker died with this task."""
 
-    run_id: str
+    task: str
     why: str
 
 
 @dataclass(frozen=True)
 class Unwritten:
-    """The point ran but its record could not be written: the disk's fault, not the point's."""
+    """The points ran but their records could not be written: the disk's fault, not the points'."""
 
-    run_id: str
+    task: str
     why: str
 
 
@@ -75,7 +92,7 @@ class Note:
     text: str
 
 
-Event = Beat | Done | Cancelled | Lost | Unwritten | Note
+Event = Beat | Done | Lost | Unwritten | Note
 
 
 class Executor(Protocol):
@@ -87,8 +104,8 @@ class Executor(Protocol):
     def free(self) -> int: ...
     def submit(self, task: Task) -> None: ...
     def poll(self, timeout: float) -> list[Event]: ...
-    def cancel(self, run_id: str, why: str) -> None: ...
-    def kill(self, run_id: str) -> None: ...
+    def cancel(self, task: str, why: str) -> None: ...
+    def kill(self, task: str, why: str) -> None: ...
     def close(self) -> None: ...
 
 
@@ -111,33 +128,33 @@ class Serial:
         return int(self.task is None)
 
     def submit(self, task: Task) -> None:
-        """Take a point; it runs in `poll`."""
+        """Take a task; it runs in `poll`."""
         self.task, self.stop = task, ""
 
     def poll(self, timeout: float) -> list[Event]:
-        """Run the point that waits."""
+        """Run the task that waits."""
         from mpm.sweep.worker import perform
 
         if self.task is None:
             return []
         task = self.task
 
-        def beat(fraction: float, time: float) -> str:
-            self.heed(Beat(task.run_id, fraction, time))
+        def beat(run_id: str, fraction: float, time: float) -> str:
+            self.heed(Beat(task.id, run_id, fraction, time))
             return self.stop
 
         message = perform(task, self.runner, beat)
         self.task = None
         return [event(message)]
 
-    def cancel(self, run_id: str, why: str) -> None:
-        """Stop the running point at its next beat."""
-        if self.task is not None and self.task.run_id == run_id:
+    def cancel(self, task: str, why: str) -> None:
+        """Stop the running task at its next beat."""
+        if self.task is not None and self.task.id == task:
             self.stop = why
 
-    def kill(self, run_id: str) -> None:
+    def kill(self, task: str, why: str) -> None:
         """As `cancel`: there is no other process to end."""
-        self.cancel(run_id, "cancel")
+        self.cancel(task, "cancel")
 
     def close(self) -> None:
         """Nothing to end."""
@@ -145,13 +162,11 @@ class Serial:
 
 def event(message: dict[str, Any]) -> Event:
     """A worker's message as an event."""
-    kind, run_id = message["is"], message.get("run_id", "")
+    kind = message["is"]
     if kind == "beat":
-        return Beat(run_id, message["fraction"], message["time"])
+        return Beat(message["task"], message["run_id"], message["fraction"], message["time"])
     if kind == "done":
-        return Done(run_id, message["line"])
-    if kind == "cancelled":
-        return Cancelled(run_id)
+        return Done(message["task"], tuple(message["lines"]), tuple(message["left"]))
     if kind == "unwritten":
-        return Unwritten(run_id, message["why"])
+        return Unwritten(message["task"], message["why"])
     return Note(message["text"])

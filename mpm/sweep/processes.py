@@ -37,6 +37,7 @@ class Child:
         theirs.close()
         self.state = "starting"  # then idle, warming, busy
         self.task: Task | None = None
+        self.why = ""  # it was killed
 
     def order(self, message: dict) -> None:
         """Send an order; a worker that is gone is noticed in `poll`."""
@@ -88,10 +89,10 @@ class Processes:
         return sum(child.state == "idle" for child in self.children.values())
 
     def submit(self, task: Task) -> None:
-        """Give a point to an idle worker."""
+        """Give a task to an idle worker."""
         child = next(child for child in self.children.values() if child.state == "idle")
         child.state, child.task = "busy", task
-        child.order({"do": "point", "task": vars(task)})
+        child.order({"do": "task", "task": task.message()})
 
     def poll(self, timeout: float) -> list[Event]:
         """Wait for news from any worker."""
@@ -136,18 +137,19 @@ class Processes:
                 raise BrokenWorkers(f"{START_FAILURES} workers in a row ended before they were ready; the last: {words}")
         if child.state == "warming":
             return [Note(f"compiling ahead failed: {words}")]
-        return [Lost(child.task.run_id, words)] if child.task else []
+        return [Lost(child.task.id, child.why or words)] if child.task else []
 
-    def cancel(self, run_id: str, why: str) -> None:
+    def cancel(self, task: str, why: str) -> None:
         """Ask the worker to stop at its next beat."""
         for child in self.children.values():
-            if child.task and child.task.run_id == run_id:
+            if child.task and child.task.id == task:
                 child.order({"do": "stop", "why": why})
 
-    def kill(self, run_id: str) -> None:
-        """End the worker of a point; `poll` tells its loss."""
+    def kill(self, task: str, why: str) -> None:
+        """End the worker of a task; `poll` tells its loss, with `why` in place of the signal."""
         for child in self.children.values():
-            if child.task and child.task.run_id == run_id:
+            if child.task and child.task.id == task:
+                child.why = why
                 child.process.kill()
 
     def close(self) -> None:

@@ -2,19 +2,28 @@
 
     OUT/experiment.json      what the folder holds: config, key of the base, swept paths
     OUT/points/ab/<id>.nc    one sealed file a finished point, ok or not (records.point); `.damaged` where the seal did not hold
+    OUT/batches/0000/<number>.nc   one sealed file for the points of a batch (records.batch), FOLDER numbers a folder; the engine counts them up
     OUT/sweep.nc             the dataset (collect.py)
+    A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
     OUT/lock                 held with flock by the process that writes: the kernel releases it when its owner dies
 """
 
+import contextlib
+import errno
 import fcntl
 import json
 import os
 import platform
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import DamagedFile, summary, sync_folder, write_whole
 from mpm.records.provenance import now, versions
+
+BATCH = "batch-"
+FOLDER = 1000  # batches a folder
+FEW = 100  # points that are looked for one by one rather than by listing folders
 
 
 class Refused(Exception):
@@ -26,38 +35,126 @@ class Store:
 
     def __init__(self, out: Path | str):
         self.out = Path(out)
+        self.seen: set[int] = set()  # batches whose summaries are known
+        self.batched: dict[str, int] = {}  # run id -> the last batch that holds it
+        self.summaries: dict[str, dict] = {}
 
     @property
     def dataset(self) -> Path:
         """The assembled dataset."""
         return self.out / "sweep.nc"
 
-    def path(self, run_id: str) -> Path:
-        """Where a point lies."""
-        return self.out / "points" / run_id[:2] / f"{run_id}.nc"
+    def path(self, name: str) -> Path:
+        """Where a point's own file (its run id) or a batch's (`batch-<number>`) lies; `places` says which of them holds a point."""
+        if name.startswith(BATCH):
+            number = int(name.removeprefix(BATCH))
+            return self.out / "batches" / f"{number // FOLDER:04d}" / f"{number:08d}.nc"
+        return self.out / "points" / name[:2] / f"{name}.nc"
+
+    def own(self, run_ids: list[str]) -> set[str]:
+        """Those of the points that have a file of their own."""
+        if len(run_ids) < FEW:
+            return {run_id for run_id in run_ids if self.path(run_id).exists()}
+        there: set[str] = set()
+        for shard in {run_id[:2] for run_id in run_ids}:
+            with contextlib.suppress(FileNotFoundError):
+                there.update(name.removesuffix(".nc") for name in os.listdir(self.out / "points" / shard) if name.endswith(".nc"))
+        return there.intersection(run_ids)
+
+    def places(self, run_ids: list[str]) -> dict[str, str]:
+        """The name of what holds each point that is there: its own (the run id), or a batch's."""
+        self.look()
+        own = self.own(run_ids)
+        return {run_id: run_id if run_id in own else f"{BATCH}{self.batched[run_id]}" for run_id in run_ids if run_id in own or run_id in self.batched}
 
     def save(self, record: Any) -> None:
         """Put a point on disk, durably; when this returns the point counts."""
         from mpm.records.point import pack
 
-        path = self.path(record.run_id)
+        self.put(self.path(record.run_id), pack(record))
+
+    def save_batch(self, records: list[Any], number: int) -> None:
+        """Put many small points on disk at once. What has fields, or has a file of its own already, gets its own."""
+        from mpm.records.batch import fits, pack_batch
+
+        own = self.own([record.run_id for record in records])
+        together = [record for record in records if fits(record) and record.run_id not in own]
+        if len(together) > 1:
+            self.put(self.path(f"{BATCH}{number}"), pack_batch(together))
+        kept = {record.run_id for record in together} if len(together) > 1 else set()
+        for record in records:
+            if record.run_id not in kept:
+                self.save(record)
+
+    def put(self, path: Path, data: bytes) -> None:
+        """A file, whole and durable, in a folder that may be new."""
         if not path.parent.is_dir():
+            above = [folder for folder in (path.parent, path.parent.parent) if not folder.is_dir()]
             path.parent.mkdir(parents=True, exist_ok=True)
-            sync_folder(path.parent.parent)
-        write_whole(path, pack(record))
+            for folder in above:
+                sync_folder(folder.parent)
+        write_whole(path, data)
 
     def load(self, run_id: str, fields: bool = True) -> Any:
         """A point, checked against its seal."""
+        for _, record in self.load_all([run_id], fields, strict=True):
+            return record
+        raise FileNotFoundError(errno.ENOENT, "no such point", str(self.path(run_id)))
+
+    def load_all(self, run_ids: list[str], fields: bool = True, strict: bool = False) -> Iterator[tuple[str, Any]]:
+        """(run id, record) of each point that is there, by file, each file read once; DamagedFile in the place of a record unless `strict`."""
+        from mpm.records.batch import read_batch
         from mpm.records.point import read
 
-        return read(self.path(run_id), fields)
+        by_file: dict[str, list[str]] = {}
+        for run_id, name in self.places(run_ids).items():
+            by_file.setdefault(name, []).append(run_id)
+        for name, members in by_file.items():
+            try:
+                if name.startswith(BATCH):
+                    found = {record.run_id: record for record in read_batch(self.path(name))}
+                else:
+                    found = {name: read(self.path(name), fields)}
+            except DamagedFile as error:
+                if strict:
+                    raise
+                found = dict.fromkeys(members, error)
+            for run_id in members:
+                yield run_id, found[run_id]
+
+    def look(self) -> list[str]:
+        """Read the summaries of batches that have appeared since the last look; names of those whose end is damaged."""
+        damaged = []
+        for path in sorted((self.out / "batches").glob("*/[0-9]*.nc")):
+            number = int(path.stem)
+            if number in self.seen:
+                continue
+            try:
+                line = summary(path)
+            except DamagedFile:
+                damaged.append(f"{BATCH}{number}")
+                continue
+            if line is not None:
+                self.seen.add(number)
+                for point in line["points"]:
+                    if number >= self.batched.get(point["run_id"], 0):
+                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = number, point
+        return damaged
+
+    def bytes(self, run_ids: Iterable[str]) -> int:
+        """Size of all files that hold these points."""
+        return sum(self.path(name).stat().st_size for name in set(self.places(list(run_ids)).values()))
+
+    def next_number(self) -> int:
+        """The first number that no batch has, or had before it was set aside."""
+        return max((int(path.name.partition(".")[0]) for path in (self.out / "batches").glob("*/[0-9]*")), default=-1) + 1
 
     def lines(self, run_ids: list[str]) -> tuple[dict[str, dict], list[str]]:
-        """Summaries of the points that are there, and the ids of files whose end is damaged."""
-        found, damaged = {}, []
+        """Summaries of the points that are there, and the names (of points and batches) of files whose end is damaged."""
+        damaged, found, own = self.look(), {}, self.own(run_ids)
         for run_id in run_ids:
             try:
-                line = summary(self.path(run_id))
+                line = summary(self.path(run_id)) if run_id in own else self.summaries.get(run_id)
             except DamagedFile:
                 damaged.append(run_id)
                 continue
@@ -65,9 +162,10 @@ class Store:
                 found[run_id] = line
         return found, damaged
 
-    def set_aside(self, run_id: str) -> Path:
-        """Move a damaged file out of the way, so that the point runs again; nothing is deleted."""
-        path = self.path(run_id)
+    def set_aside(self, name: str) -> Path:
+        """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""
+        self.seen, self.batched, self.summaries = set(), {}, {}  # an earlier batch may hold some of its points
+        path = self.path(name)
         return path.rename(path.with_suffix(".damaged"))
 
     def experiment(self) -> dict | None:

@@ -1,6 +1,6 @@
-"""Worker: a process that lives through a sweep, runs one point at a time and puts each on disk before it says so.
+"""Worker: a process that lives through a sweep, runs one task at a time and puts its records on disk before it says so.
 
-Messages are JSON on one private socket. In: {do: warm|point|stop|quit}. Out: {is: ready|warmed|beat|done|cancelled|unwritten}.
+Messages are JSON on one private socket. In: {do: warm|task|stop|quit}. Out: {is: ready|warmed|beat|done|unwritten}.
 A thread listens, so that the parent's end (EOF) ends the worker at once, whatever compiled code is running: no orphan outlives the parent.
 """
 
@@ -21,29 +21,65 @@ from mpm.sweep.executors import Task
 QUIET = 0.2  # least seconds between two beats told
 
 
-def perform(task: Task, runner: str, stopped: Callable[[float, float], str]) -> dict:
-    """Run a point, save its record, and return the message that tells it.
+def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str]) -> dict:
+    """Run a task, save its records, and return the message that tells it.
 
-    `stopped(fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
+    `stopped(run_id, fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
     """
-    from mpm.config import load
     from mpm.sweep.store import Store
 
-    why = ""
-
-    def beat(fraction: float, when: float) -> bool:
-        nonlocal why
-        why = why or stopped(fraction, when)
-        return bool(why)
-
-    record = compute(task.run_id, lambda: load(task.config), runner, beat, attempts=task.attempt, config=task.config)
-    if why == "cancel" and record.outcome == "budget":
-        return {"is": "cancelled", "run_id": task.run_id}
+    records, left = results(task, runner, stopped)
     try:
-        Store(task.out).save(record)
+        if len(records) > 1:
+            Store(task.out).save_batch(records, task.number)
+        elif records:
+            Store(task.out).save(records[0])
     except OSError as error:
-        return {"is": "unwritten", "run_id": task.run_id, "why": f"{error.filename}: {error.strerror}"}
-    return {"is": "done", "run_id": task.run_id, "line": record.line}
+        return {"is": "unwritten", "task": task.id, "why": f"{error.filename}: {error.strerror}"}
+    return {"is": "done", "task": task.id, "lines": [record.line for record in records], "left": left}
+
+
+def results(task: Task, runner: str, stopped: Callable[[str, float, float], str]) -> tuple[list[Any], list[str]]:
+    """The records of a task's points, and the points that were left when it was stopped."""
+    from mpm.config import restore
+
+    if len(task.jobs) > 1 and (found := together(task, runner)) is not None:
+        return found, []
+    records, why = [], ""
+    for place, job in enumerate(task.jobs):
+
+        def beat(fraction: float, when: float, run_id: str = job.run_id) -> bool:
+            nonlocal why
+            why = why or stopped(run_id, fraction, when)
+            return bool(why)
+
+        if len(task.jobs) > 1 and beat(0.0, 0.0):
+            return records, [other.run_id for other in task.jobs[place:]]
+        record = compute(job.run_id, lambda config=job.config: restore(config), runner, beat, attempts=job.attempt, config=job.config)
+        if record.outcome == "budget" and (why == "cancel" or (why and len(task.jobs) > 1)):
+            return records, [other.run_id for other in task.jobs[place:]]
+        records.append(record)
+    return records, []
+
+
+def together(task: Task, runner: str) -> list[Any] | None:
+    """Records of material points, from one compiled call; None where the points must run one by one (which also tells which of them fails)."""
+    from mpm.config import restore
+    from mpm.records import point
+    from mpm.records.provenance import now, source_hash
+
+    run_points = getattr(importlib.import_module(runner), "run_points", None)
+    if run_points is None or any(job.config["grid"]["dimension"] != 0 for job in task.jobs):
+        return None
+    calls = {"source": source_hash(), "started": now()}
+    try:
+        runs = run_points([restore(job.config) for job in task.jobs])
+    except Exception:  # one of them cannot run: one by one, each tells for itself
+        return None
+    finished = now()
+    return [
+        point.from_run(job.run_id, run, attempts=job.attempt, config=job.config, **calls, finished=finished) for job, run in zip(task.jobs, runs, strict=True)
+    ]
 
 
 def compute(run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, **calls: Any) -> Any:
@@ -125,14 +161,14 @@ class Worker:
                 except Exception as error:  # the points will say the same, each in its own record
                     self.tell({"is": "warmed", "text": f"compiling ahead failed: {first_line(error)}{where(error)}"})
             else:
-                task = Task(**order["task"])
-                self.tell(perform(task, self.runner, functools.partial(self.beat, task.run_id)))
+                task = Task.of(order["task"])
+                self.tell(perform(task, self.runner, functools.partial(self.beat, task.id)))
 
-    def beat(self, run_id: str, fraction: float, when: float) -> str:
+    def beat(self, task: str, run_id: str, fraction: float, when: float) -> str:
         """Tell progress now and then; return the reason to stop, if any."""
         if time.monotonic() - self.told > QUIET:
             self.told = time.monotonic()
-            self.tell({"is": "beat", "run_id": run_id, "fraction": float(fraction), "time": float(when)})
+            self.tell({"is": "beat", "task": task, "run_id": run_id, "fraction": float(fraction), "time": float(when)})
         return self.stop
 
 

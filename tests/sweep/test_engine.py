@@ -12,6 +12,7 @@ import pytest
 
 from mpm.config import load
 from mpm.sweep.api import execute, sweep, tree_of
+from mpm.sweep.cases import plan
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
 from mpm.sweep.executors import BrokenWorkers
@@ -269,22 +270,23 @@ def test_a_dataset_of_what_is_there_while_running(config, tmp_path, monkeypatch)
 
 
 def test_killed_again_and_again_loses_nothing_that_finished(config, tmp_path, marks):
-    points = config([round(0.1 * k, 1) for k in range(1, 41)])
+    points = config([round(0.01 * k, 2) for k in range(1, 601)])
     go(points, tmp_path / "whole")
+    run_ids = [case.run_id for case in plan(load(points)).cases]
     done = 0
-    for wait in (0.0, 0.1):
-        process = start(points, tmp_path / "out", lambda done=done: marks()[40 + done :])
+    for wait in (0.0, 0.05):
+        process = start(points, tmp_path / "out", lambda done=done: marks()[600 + done :])
         time.sleep(wait)
         process.kill()
         process.communicate(timeout=20)
         end = time.monotonic() + 2
-        while not all(gone(int(row[-1])) for row in marks()[40:]) and time.monotonic() < end:
+        while not all(gone(int(row[-1])) for row in marks()[600:]) and time.monotonic() < end:
             time.sleep(0.02)
-        lines, damaged = Store(tmp_path / "out").lines([path.stem for path in (tmp_path / "out").glob("points/*/*.nc")])
+        lines, damaged = Store(tmp_path / "out").lines(run_ids)
         assert not damaged and all(line["status"] == 0 for line in lines.values())
-        done = len(marks()) - 40
+        done = len(marks()) - 600
     kept = len(lines)
-    assert go(points, tmp_path / "out", jobs=2).ran == 40 - kept
+    assert 0 < kept < 600 and go(points, tmp_path / "out", jobs=2).ran == 600 - kept
     assert compare(tmp_path / "whole", tmp_path / "out") == []
 
 
