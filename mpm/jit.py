@@ -20,7 +20,7 @@ from numba.extending import overload
 FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
 
 
-ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots"}  # rooms that compiled code cannot reach (tests/test_layers.py)
+ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots", "reduce"}  # rooms that compiled code cannot reach (tests/test_layers.py)
 
 
 def source_hash(without: frozenset | set = frozenset()) -> str:

@@ -18,6 +18,17 @@ def run_point(experiment, beat=None, compare: bool = True) -> Run:
 
     compare    False leaves out the errors against the exact solution, which cost time that a run does not need; what starts from it still does
     """
+    if getattr(experiment.model, "kind", "full") == "auto":
+        from mpm.reduce.choose import smallest
+
+        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare))
+        run.finals |= misfits(experiment, run)
+        return run
+    return run_named(experiment, beat, compare)
+
+
+def run_named(experiment, beat=None, compare: bool = True) -> Run:
+    """Run the model that the config names."""
     from mpm.verification import exact_solution
 
     exact = exact_solution(experiment)

@@ -19,7 +19,7 @@ LAYERS = {
     "diagnostics": 2, "integrate": 2,
     "error": 2, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
-    "runner": 5, "costs": 5, "sweep": 5, "verification": 5,
+    "runner": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6,
 }  # fmt: skip
 PEERS = {
@@ -27,7 +27,7 @@ PEERS = {
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe"},
-    "runner": {"verification", "costs"}, "sweep": {"runner", "verification", "costs"},
+    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat

@@ -15,6 +15,7 @@ from mpm.config.chart import Chart
 from mpm.config.laws import Constant
 from mpm.config.loading import Stage
 from mpm.config.materials import Material
+from mpm.config.model import Which
 from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
 from mpm.config.quantities import Acceleration
@@ -38,6 +39,7 @@ class Experiment(Model):
     time: Clock
     method: Method = Method()
     output: Output = Output()
+    model: Which | None = doc(None, description="full unless given; auto takes the smallest model that will do")
     exact: Exact | None = doc(None, description="exact solution that the run is compared with")
     sweep: Sweep | None = doc(None, description="what varies")
     chart: Chart | None = doc(None, description="speed against accuracy: methods and resolutions of `mpm chart`")
@@ -100,6 +102,8 @@ class Experiment(Model):
         if section in NOT_KEYED or value is None:
             return None
         data = plain(value, defaults=False)
+        if section == "model" and value.kind == "full":
+            return None
         if section == "method" and not any(self.method.offset):
             data.pop("offset", None)
         if section == "walls":

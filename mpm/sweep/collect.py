@@ -124,7 +124,9 @@ class Table:
                 for name, value in record.finals.items():
                     finals[name][index] = value
         flags = {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)}
-        columns = {"status": status, "error": error, "outcome": outcome, "run_id": run_id, "steps": steps, "wall_time": wall, "attempts": attempts, **finals}
+        models = {"model_name": self.models()} if any("model" in record.facts for record in self.records) else {}
+        columns = {"status": status, "error": error, "outcome": outcome, "run_id": run_id, "steps": steps, "wall_time": wall, "attempts": attempts}
+        columns |= models | finals
         group = Group(planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.names("series"))))
         coordinates = " ".join(name for name in group.variables if name not in self.dims)
         for name, values in columns.items():
@@ -132,6 +134,13 @@ class Table:
             if coordinates:
                 group.variables[name].attrs["coordinates"] = coordinates
         return group
+
+    def models(self) -> np.ndarray:
+        """Which model answered each point, where the config left it open."""
+        model = self.full("", object)
+        for index, record in self.places:
+            model[index] = record.facts.get("model", {}).get("name", "full")
+        return model
 
     def series(self) -> Group:
         """Observables over time."""
