@@ -98,6 +98,13 @@ class Explicit(Kind):
     kind: ClassVar[str] = "explicit"
 
 
+class Bounded(Kind):
+    """No temperature beyond those of body and surroundings: hat functions, conductances that are never negative, implicit steps."""
+
+    kind: ClassVar[str] = "bounded"
+    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] = doc(1e-3, description="relative error a step")
+
+
 class ImplicitHeat(Kind):
     """L-stable implicit steps by conjugate gradients: any step, any beta."""
 
@@ -122,7 +129,7 @@ HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
 LOCKING: tuple[type[Kind], ...] = (Fbar,)
 BOUNDS: tuple[type[Kind], ...] = (Repair,)
-RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit)
+RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit, Bounded)
 Transfer = one_of("transfer", *TRANSFERS)
 
 

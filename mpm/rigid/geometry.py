@@ -30,6 +30,7 @@ class Geometry(NamedTuple):
     w: np.ndarray  # (Q,) with the weight r where axisymmetric
     faces: tuple[tuple[np.ndarray, np.ndarray], ...]  # points and weights of each surface
     sight: tuple[np.ndarray, np.ndarray]  # splines at the points where extremes are looked for: cells' quadrature points nearest the middle, and the surface
+    depth: tuple[np.ndarray, ...] = ()  # (N,) of the nodes below each surface, where they exchange one by one (mpm.rigid.hats)
 
 
 def evaluated(nodes: Nodes, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -72,12 +73,12 @@ def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sid
         assemble(nodes, d, surface.x[part], sw[part], surface.cell[part], counts, False, stencil, stencil)
         exchange.append(stencil)
         faces.append((surface.x[part], sw[part]))
-    sight = evaluated(nodes, np.concatenate([volume.x[_middles(volume)], surface.x]))
+    sight = evaluated(nodes, np.concatenate([volume.x[middles(volume)], surface.x]))
     sums = tuple(row_sums(b, nodes.diff) for b in exchange)
     return Geometry(nodes, d, mass, stiffness, tuple(exchange), row_sums(mass, nodes.diff), sums, mass[0] > 0, volume.x, w, tuple(faces), sight)
 
 
-def _middles(volume) -> np.ndarray:
+def middles(volume) -> np.ndarray:
     """One quadrature point a cell: the one nearest to the mean of the cell's points."""
     cell, key = np.unique(volume.cell, return_inverse=True)
     number = np.bincount(key)

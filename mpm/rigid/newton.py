@@ -48,7 +48,7 @@ def jacobian(problem, band, h, dt, slope):
 class NewtonSteps(Enthalpy):
     """Implicit steps of one body on enthalpy."""
 
-    replan, radius = False, 0.0
+    replan, radius, close = False, 0.0, CLOSE
 
     def __init__(self, system, tolerance: float, order: int = 2):
         super().__init__(system, tolerance)
@@ -69,7 +69,7 @@ class NewtonSteps(Enthalpy):
         residual = h - base - dt * f
         size = self.norm(residual)
         for _ in range(ITERATIONS):
-            if size <= CLOSE * self.allowed:
+            if size <= self.close * self.allowed:
                 return h, taken
             jacobian(problem, self.band, h, dt, slope)
             if factorise(self.band) >= 0:
@@ -101,7 +101,7 @@ class NewtonSteps(Enthalpy):
             if found is None:
                 return np.inf
             guess, q[i] = found
-        self.rates, self.taken, self.dt = f, q, dt
+        self.rates, self.taken, self.dt, self.reached = f, q, dt, guess
         return self.norm((dt * self.tableau.error) @ f) / self.allowed
 
     def accept(self):

@@ -23,7 +23,7 @@ class Nodes(NamedTuple):
     first: np.ndarray  # (3,) number of the first node of the box
     count: np.ndarray  # (3,) nodes a direction
     stride: np.ndarray  # (3,) step in the flat index
-    local: np.ndarray  # (3^d, 3) offsets 0, 1, 2 of the splines of a cell
+    local: np.ndarray  # (m, 3) offsets of the splines of a cell: 0, 1, 2 in each direction; 0, 1 of hats
     diff: np.ndarray  # (n,) flat differences >= 0 of the stencil, rising
     place: np.ndarray  # (3^d, 3^d) row of the stencil of a pair, -1 where its difference is negative
 
@@ -115,17 +115,23 @@ def assemble(nodes, d, x, w, cell, counts, with_gradient, mass, stiffness):
 
 @kernel
 def evaluate(nodes, d, x):
-    """Flat nodes (P, 3^d) and values (P, 3^d) of the splines at points x (P, d); beyond the box the last cell's polynomials go on."""
+    """Flat nodes (P, m) and values (P, m) of the m = 3^d splines, or 2^d hats, at points x (P, d); beyond the box the last cell's polynomials go on."""
     m = nodes.local.shape[0]
+    hats = m == 2**d
     index, value = np.empty((len(x), m), dtype=np.int64), np.empty((len(x), m))
     n, dn = np.ones((3, 3)), np.zeros((3, 3))
     for p in range(len(x)):
         base = 0
         for k in range(d):
             f = (x[p, k] - nodes.origin[k]) / nodes.h - nodes.first[k]
-            at = min(max(int(np.floor(f + 0.5)), 1), nodes.count[k] - 2)
-            spline(f - at, n, dn, k)
-            base += (at - 1) * nodes.stride[k]
+            if hats:
+                at = min(max(int(np.floor(f)), 0), nodes.count[k] - 2)
+                n[k, 0], n[k, 1] = 1.0 - (f - at), f - at
+                base += at * nodes.stride[k]
+            else:
+                at = min(max(int(np.floor(f + 0.5)), 1), nodes.count[k] - 2)
+                spline(f - at, n, dn, k)
+                base += (at - 1) * nodes.stride[k]
         for a in range(m):
             i, j, k = nodes.local[a, 0], nodes.local[a, 1], nodes.local[a, 2]
             index[p, a] = base + i * nodes.stride[0] + j * nodes.stride[1] + k * nodes.stride[2]

@@ -9,6 +9,7 @@ import numpy as np
 from mpm.materials.laws import Constant
 from mpm.materials.roles import enthalpy, value
 from mpm.outcome import COMPLETED, Outcome, outcome
+from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
 from mpm.rigid.drive import Watch, drive
 from mpm.rigid.geometry import evaluated
@@ -23,7 +24,7 @@ LARGE = 2e10  # multiply-adds of one factorisation that nobody waits for: 3 s
 
 @dataclass(frozen=True)
 class Method:
-    """`kind` auto, implicit or explicit; implicit: order 4 or 2, tolerance (relative error a step); `step` [s] fixes the size of implicit steps."""
+    """`kind` auto, implicit, explicit or bounded; implicit: order 4 or 2, tolerance (relative error a step); `step` [s] fixes the size of implicit steps."""
 
     kind: str = "auto"
     order: int = 4
@@ -77,6 +78,8 @@ def _costs(system: System, linear: bool, explicit: ChebyshevSteps | None, end: f
 
 def choose(system: System, method: Method, end: float):
     """The method's object for one body. `auto`: implicit where kappa and alpha are constant and a factorisation is bearable, else what costs less."""
+    if method.kind == "bounded":
+        return BoundedSteps(system, method.tolerance)
     linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant) and len(system.hot) == 0
     implicit = LinearSteps if linear else NewtonSteps
     bearable = float(system.geometry.nodes.size) * float(system.geometry.nodes.diff[-1]) ** 2 < LARGE
@@ -94,7 +97,7 @@ def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
     origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
     found = {"unknowns": 0, "methods": [], "limits": {}, "seconds": 0.0, "memory_bytes": 0}
     for body in bodies:
-        system = make_system(body, axisymmetric, h, origin, float(end))
+        system = make_system(body, axisymmetric, h, origin, float(end), method.kind == "bounded")
         steps = choose(system, method, float(end))
         explicit = isinstance(steps, ChebyshevSteps)
         linear = isinstance(steps, LinearSteps)
@@ -132,7 +135,7 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     shot_times, points = (np.asarray(a, dtype=float) for a in snapshots or (np.zeros(0), np.zeros((0, dimension))))
     seen = np.full((len(shot_times), len(points)), np.nan)
     for k, body in enumerate(bodies):
-        system = make_system(body, axisymmetric, h, origin, float(end))
+        system = make_system(body, axisymmetric, h, origin, float(end), method.kind == "bounded")
         steps = choose(system, method, float(end))
         mine = np.flatnonzero(owner == k)
         levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]

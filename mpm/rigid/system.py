@@ -17,6 +17,7 @@ from mpm.materials.laws import Constant
 from mpm.materials.roles import value
 from mpm.rigid.around import Programmes, Radiant
 from mpm.rigid.geometry import Geometry, evaluated, geometry
+from mpm.rigid.hats import hat_geometry, over_depth
 
 PENALTY = 1e5
 
@@ -62,17 +63,18 @@ class System:
     coldest: float  # [K]
     hottest: float  # [K]
     stiff: float  # largest beta h/kappa
+    bounds: tuple[float, float]  # that no temperature may pass: infinite on the side of a flux [K]
 
 
 def law(given):
     return Constant(float(given)) if isinstance(given, int | float) else given
 
 
-def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0) -> System:
-    """`end`: how long fluxes act, for the range of temperatures [s]."""
+def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False) -> System:
+    """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps."""
     kappa, alpha = law(body.kappa), law(body.alpha)
     sides = tuple(entry[0] for entry in (*body.surfaces, *body.fluxes, *body.radiation))
-    shaped = geometry(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides)
+    shaped = (hat_geometry if hats else geometry)(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides)
     n = len(body.surfaces)
     betas = [float(beta) for _, beta, _ in body.surfaces]
     around = [outside for _, beta, outside in body.surfaces if beta > 0] + [sky for _, emissivity, sky in body.radiation if emissivity > 0]
@@ -85,14 +87,17 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     stiffest = int(np.argmax(betas)) if betas else 0
     zero = float(at(body.surfaces[stiffest][2], 0.0)) if betas and betas[stiffest] * depth > conductivity else float(body.temperature)
     exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
-    for (_, _, outside), beta, stencil, area in zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False):
+    for k, ((_, _, outside), beta, stencil, area) in enumerate(zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False)):
         if beta > 0:
+            beta = over_depth(beta, shaped.depth[k], conductivity) if hats else beta
             exchange += beta * stencil
             facing += beta * area
             if isinstance(outside, int | float):
                 steady += beta * (outside - zero) * area
             else:
                 forcing.append((outside, beta * area))
+    low, high = min(data), max(data)
+    between = (-math.inf if any(q < 0 for _, q in body.fluxes) else low, math.inf if any(q > 0 for _, q in body.fluxes) else high)
     for (_, q), area in zip(body.fluxes, shaped.area[n:], strict=False):
         steady += q * area
         rise = abs(q) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
@@ -105,13 +110,13 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     programmes = Programmes(steady, tuple(forcing), skies, zero)
     return System(
         shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
-        max(data), stiff,
+        max(data), stiff, between,
     )  # fmt: skip
 
 
 def radiating(body: RigidBody, shaped: Geometry, zero: float, first: int, hottest: float) -> tuple[Radiant, np.ndarray]:
     """Points that radiate, and the stencil of their slope at the hottest temperature; `first`: number of the first radiating surface."""
-    splines = 3**shaped.dimension
+    splines = len(shaped.nodes.local)
     parts = [(np.zeros((0, splines), dtype=np.int64), np.zeros((0, splines)), np.zeros(0), np.zeros(0, dtype=np.int64))]
     hot = np.zeros_like(shaped.mass) if body.radiation else np.zeros((0, 0))
     for k, (_, emissivity, _) in enumerate(body.radiation):

@@ -44,7 +44,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True) -> Run:
     found = {dataset_name(name): threshold(name) for name in experiment.output.observables if threshold(name) is not None}
     times, grid = output_times(experiment), experiment.grid
     kind = type(experiment.method.rigid).kind
-    options = {"order": experiment.method.rigid.order, "tolerance": experiment.method.rigid.tolerance} if kind == "implicit" else {}
+    options = {name: getattr(experiment.method.rigid, name) for name in ("order", "tolerance") if hasattr(experiment.method.rigid, name)}
     method = Method(kind, step=None if experiment.time.step == "auto" else experiment.time.step, **options)
     shift = np.array(experiment.method.offset) * grid.cell
     levels = [(at.probe, at.kelvin) for at in found.values()]
