@@ -17,6 +17,15 @@ def which(text: str) -> str:
     return text
 
 
+def route(text: str) -> str:
+    """A value of --results."""
+    if text not in ("wire", "shared"):
+        raise typer.BadParameter(f"{text!r}: say wire or shared")
+    return text
+
+
+SCHEDULER = "Run on a Dask cluster, as tcp://host:8786; local starts one on 127.0.0.1 with JOBS workers."
+RESULTS = "From a cluster: over the wire, or through OUT where all workers see it under the same path."
 AGAIN = "Run finished points again: those that are not ok; those that other source made; all."
 RETRIES = "Tries again of a killed or timed-out point.  [default: 3 killed, 0 timed out]"
 Rerun = Annotated[str | None, typer.Option(metavar="failed|stale|all", parser=which, help=AGAIN, show_default=False)]
@@ -34,6 +43,8 @@ def sweep(
     fail_fast: Annotated[bool, typer.Option("--fail-fast", help="Stop at the first point that is not ok.")] = False,
     max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
     max_runs: MaxRuns = 10_000,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER, show_default=False)] = None,
+    results: Annotated[str, typer.Option(metavar="wire|shared", parser=route, help=RESULTS)] = "wire",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
     smoke: Smoke = False,
     as_json: Json = False,
@@ -53,7 +64,7 @@ def sweep(
     from mpm.sweep.engine import Options
 
     experiment = load(config, set_, smoke)
-    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke)
+    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke, scheduler, results == "shared")
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
     picture = draw(result)
     if as_json:

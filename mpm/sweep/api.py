@@ -102,7 +102,12 @@ def run_engine(supervisor: Engine, options: Options) -> None:
             supervisor.run(Serial(options.runner, supervisor.heed))
             return
         ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
-        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead else None
+        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead or options.scheduler else None
+        if options.scheduler:
+            from mpm.sweep.cluster import Cluster
+
+            supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, supervisor.store.out.resolve(), options.jobs))
+            return
         supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first))
 
 
@@ -183,7 +188,7 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
 
     out    folder; `results/<config name>` unless given
     jobs   worker processes; "auto" is one a core; 0 runs the points in this process
-    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke
+    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared
     Ctrl-C finishes what runs, collects, and raises KeyboardInterrupt; the same call again goes on.
     """
     options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)

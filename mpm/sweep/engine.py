@@ -36,6 +36,8 @@ class Options:
 
     retries    for killed and timed-out points only, as a model's own failure repeats; None: 3 for killed, 0 for timed out
     rerun      None (only what has no record), "failed" (and what is not ok), "stale" (and what other source made), "all"
+    scheduler  a Dask scheduler's address, or "local" for one of this machine with `jobs` workers; None: processes of our own
+    shared     its workers write into the sweep's folder, which all of them see; otherwise records come over the wire
     """
 
     jobs: int = 1
@@ -45,6 +47,8 @@ class Options:
     max_failures: int | None = None
     rerun: str | None = None
     smoke: bool = False
+    scheduler: str | None = None
+    shared: bool = False
     runner: str = field(default_factory=lambda: RUNNER)
 
 
@@ -108,10 +112,10 @@ class Engine:
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
         self.partial = partial  # collects what is there; called now and then
         self.due: deque[str] = deque(missing(points, lines, options.rerun))
-        self.alone: set[str] = set()  # points that died, or were in a batch that died or overran
+        self.alone: set[str] = store.own(list(self.due))  # also points that died, or were in a batch that died or overran
         self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
-        self.pace, self.number = Pace(), store.next_number()
+        self.pace, self.names = Pace(), store.batch_names()
         self.failures = self.ran = self.signals = 0
         self.stopped = self.broken = ""
         self.began = self.collected = time.monotonic()
@@ -157,8 +161,7 @@ class Engine:
             run_ids.append(self.due.popleft())
         self.attempts.update(run_ids)
         jobs = tuple(Job(run_id, self.points.cases[run_id].experiment.resolved(), self.attempts[run_id]) for run_id in run_ids)
-        task = Task(jobs, str(self.store.out), self.number)
-        self.number += len(jobs) > 1
+        task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "")
         self.running[task.id] = Running(task, time.monotonic())
         executor.submit(task)
 
@@ -190,7 +193,9 @@ class Engine:
             self.pace.heard(time.monotonic() - gone.start, len(event.lines))
         for line in event.lines:
             self.finish(line)
-        self.again(event.left)
+        if event.left:
+            missed = self.news(gone.task)
+            self.again(run_id for run_id in event.left if run_id in missed)
 
     def again(self, run_ids: Iterable[str]) -> None:
         """Points that ran in vain, through no fault that is known to be theirs: next, alone, and not as another attempt."""

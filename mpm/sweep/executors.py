@@ -29,11 +29,11 @@ class Job:
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker takes at once: one point, or a batch of tiny ones whose records share a file, `number`. `out` is where records go."""
+    """What a worker takes at once: one point, or a batch of tiny ones whose records share a file, `batch`. `out` is the sweep's folder."""
 
     jobs: tuple[Job, ...]
     out: str
-    number: int = 0
+    batch: str = ""
 
     @property
     def id(self) -> str:
@@ -42,12 +42,12 @@ class Task:
 
     def message(self) -> dict:
         """As plain JSON."""
-        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "number": self.number}
+        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "batch": self.batch}
 
     @classmethod
     def of(cls, message: dict) -> "Task":
         """From `message()`."""
-        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["number"])
+        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["batch"])
 
 
 @dataclass(frozen=True)

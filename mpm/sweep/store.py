@@ -2,7 +2,7 @@
 
     OUT/experiment.json      what the folder holds: config, key of the base, swept paths
     OUT/points/ab/<id>.nc    one sealed file a finished point, ok or not (records.point); `.damaged` where the seal did not hold
-    OUT/batches/0000/<number>.nc   one sealed file for the points of a batch (records.batch), FOLDER numbers a folder; the engine counts them up
+    OUT/batches/0000/<number>-<pass>.nc   one sealed file for the points of a batch (records.batch), FOLDER numbers a folder
     OUT/sweep.nc             the dataset (collect.py)
     A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
     OUT/lock                 held with flock by the process that writes: the kernel releases it when its owner dies
@@ -11,9 +11,11 @@
 import contextlib
 import errno
 import fcntl
+import itertools
 import json
 import os
 import platform
+import secrets
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -35,8 +37,8 @@ class Store:
 
     def __init__(self, out: Path | str):
         self.out = Path(out)
-        self.seen: set[int] = set()  # batches whose summaries are known
-        self.batched: dict[str, int] = {}  # run id -> the last batch that holds it
+        self.seen: set[str] = set()  # batches whose summaries are known
+        self.batched: dict[str, str] = {}  # run id -> the last batch that holds it
         self.summaries: dict[str, dict] = {}
 
     @property
@@ -45,10 +47,10 @@ class Store:
         return self.out / "sweep.nc"
 
     def path(self, name: str) -> Path:
-        """Where a point's own file (its run id) or a batch's (`batch-<number>`) lies; `places` says which of them holds a point."""
+        """Where a point's own file (its run id) or a batch's (`batch-<number>-<pass>`) lies; `places` says which of them holds a point."""
         if name.startswith(BATCH):
-            number = int(name.removeprefix(BATCH))
-            return self.out / "batches" / f"{number // FOLDER:04d}" / f"{number:08d}.nc"
+            stem = name.removeprefix(BATCH)
+            return self.out / "batches" / f"{int(stem.partition('-')[0]) // FOLDER:04d}" / f"{stem}.nc"
         return self.out / "points" / name[:2] / f"{name}.nc"
 
     def own(self, run_ids: list[str]) -> set[str]:
@@ -65,7 +67,7 @@ class Store:
         """The name of what holds each point that is there: its own (the run id), or a batch's."""
         self.look()
         own = self.own(run_ids)
-        return {run_id: run_id if run_id in own else f"{BATCH}{self.batched[run_id]}" for run_id in run_ids if run_id in own or run_id in self.batched}
+        return {run_id: run_id if run_id in own else self.batched[run_id] for run_id in run_ids if run_id in own or run_id in self.batched}
 
     def save(self, record: Any) -> None:
         """Put a point on disk, durably; when this returns the point counts."""
@@ -73,15 +75,14 @@ class Store:
 
         self.put(self.path(record.run_id), pack(record))
 
-    def save_batch(self, records: list[Any], number: int) -> None:
-        """Put many small points on disk at once. What has fields, or has a file of its own already, gets its own."""
+    def save_batch(self, records: list[Any], name: str) -> None:
+        """Put small points on disk at once; those with fields get files of their own. None may have its own already: that one would go on to count."""
         from mpm.records.batch import fits, pack_batch
 
-        own = self.own([record.run_id for record in records])
-        together = [record for record in records if fits(record) and record.run_id not in own]
-        if len(together) > 1:
-            self.put(self.path(f"{BATCH}{number}"), pack_batch(together))
-        kept = {record.run_id for record in together} if len(together) > 1 else set()
+        together = [record for record in records if fits(record)] if len(records) > 1 else []
+        if together:
+            self.put(self.path(name), pack_batch(together))
+        kept = {record.run_id for record in together}
         for record in records:
             if record.run_id not in kept:
                 self.save(record)
@@ -126,28 +127,30 @@ class Store:
         """Read the summaries of batches that have appeared since the last look; names of those whose end is damaged."""
         damaged = []
         for path in sorted((self.out / "batches").glob("*/[0-9]*.nc")):
-            number = int(path.stem)
-            if number in self.seen:
+            name = f"{BATCH}{path.stem}"
+            if name in self.seen:
                 continue
             try:
                 line = summary(path)
             except DamagedFile:
-                damaged.append(f"{BATCH}{number}")
+                damaged.append(name)
                 continue
             if line is not None:
-                self.seen.add(number)
+                self.seen.add(name)
                 for point in line["points"]:
-                    if number >= self.batched.get(point["run_id"], 0):
-                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = number, point
+                    if name >= self.batched.get(point["run_id"], ""):
+                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = name, point
         return damaged
 
     def bytes(self, run_ids: Iterable[str]) -> int:
         """Size of all files that hold these points."""
         return sum(self.path(name).stat().st_size for name in set(self.places(list(run_ids)).values()))
 
-    def next_number(self) -> int:
-        """The first number that no batch has, or had before it was set aside."""
-        return max((int(path.name.partition(".")[0]) for path in (self.out / "batches").glob("*/[0-9]*")), default=-1) + 1
+    def batch_names(self) -> Iterator[str]:
+        """Names for the batches of one pass, after all that are there. A worker that outlives its engine may still write one: its name is no one else's."""
+        used = (int(path.name.partition("-")[0]) for path in (self.out / "batches").glob("*/[0-9]*-*"))
+        this = secrets.token_hex(4)
+        return (f"{BATCH}{number:08d}-{this}" for number in itertools.count(max(used, default=-1) + 1))
 
     def lines(self, run_ids: list[str]) -> tuple[dict[str, dict], list[str]]:
         """Summaries of the points that are there, and the names (of points and batches) of files whose end is damaged."""

@@ -21,8 +21,8 @@ from mpm.sweep.executors import Task
 QUIET = 0.2  # least seconds between two beats told
 
 
-def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str]) -> dict:
-    """Run a task, save its records, and return the message that tells it.
+def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str], store: Any = None) -> dict:
+    """Run a task, save its records in its folder or in `store`, and return the message that tells it.
 
     `stopped(run_id, fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
     """
@@ -30,10 +30,7 @@ def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str]
 
     records, left = results(task, runner, stopped)
     try:
-        if len(records) > 1:
-            Store(task.out).save_batch(records, task.number)
-        elif records:
-            Store(task.out).save(records[0])
+        (store or Store(task.out)).save_batch(records, task.batch)
     except OSError as error:
         return {"is": "unwritten", "task": task.id, "why": f"{error.filename}: {error.strerror}"}
     return {"is": "done", "task": task.id, "lines": [record.line for record in records], "left": left}

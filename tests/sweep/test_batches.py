@@ -22,27 +22,37 @@ def go(config, out, jobs=0, **more):
 
 def test_own_files_beat_batches_and_later_batches_earlier_ones(tmp_path):
     store = Store(tmp_path)
-    store.save_batch([Record("aa11", 0, steps=1), Record("bb22", 0, steps=1), Record("cc33", 0, steps=1)], 0)
-    store.save_batch([Record("bb22", 0, steps=2), Record("cc33", 0, steps=2)], 1)
+    names = store.batch_names()
+    store.save_batch([Record("aa11", 0, steps=1), Record("bb22", 0, steps=1), Record("cc33", 0, steps=1)], next(names))
+    store.save_batch([Record("bb22", 0, steps=2), Record("cc33", 0, steps=2)], next(names))
     store.save(Record("cc33", 0, steps=3))
     wanted = {"aa11": 1, "bb22": 2, "cc33": 3}
     for seen in (store, Store(tmp_path)):
         lines, damaged = seen.lines([*wanted, "dd44"])
         assert {run_id: line["steps"] for run_id, line in lines.items()} == wanted and not damaged
         assert {run_id: record.steps for run_id, record in seen.load_all([*wanted, "dd44"])} == wanted
-        assert seen.next_number() == 2
-    store.save_batch([Record("cc33", 0, steps=4), Record("dd44", 0, steps=4), Record("ee55", 0, steps=4)], 2)
-    assert Store(tmp_path).load("cc33").steps == 4 and len(list(tmp_path.glob("points/*/*.nc"))) == 1  # it has a file of its own, and keeps it
+        assert next(seen.batch_names()).startswith("batch-00000002-") and seen.own([*wanted]) == {"cc33"}
 
 
 def test_a_damaged_batch_is_set_aside_and_its_points_are_due(tmp_path):
-    store = Store(tmp_path)
-    store.save_batch([Record("aa11", 0), Record("bb22", 0)], 7)
-    path = store.path("batch-7")
+    store, older, name = Store(tmp_path), "batch-00000006-aa", "batch-00000007-aa"
+    store.save_batch([Record("aa11", 0, steps=6), Record("cc33", 0)], older)
+    store.save_batch([Record("aa11", 0, steps=7), Record("bb22", 0)], name)
+    path = store.path(name)
     path.write_bytes(path.read_bytes()[:-30])
-    assert Store(tmp_path).lines(["aa11", "bb22"]) == ({}, ["batch-7"])
-    assert store.set_aside("batch-7").suffix == ".damaged"
-    assert store.lines(["aa11", "bb22"]) == ({}, []) and store.next_number() == 8
+    lines, damaged = Store(tmp_path).lines(["aa11", "bb22"])
+    assert damaged == [name] and list(lines) == ["aa11"]
+    assert store.set_aside(name).suffix == ".damaged" and store.lines(["aa11", "bb22"])[1] == []
+    assert store.load("aa11").steps == 6 and next(store.batch_names()).startswith("batch-00000008-")
+
+
+def test_rerun_points_with_files_of_their_own_stay_there(config, tmp_path, monkeypatch):
+    monkeypatch.setattr(pace, "BATCH", 0.0)
+    go(config(TINY[:20]), tmp_path)
+    monkeypatch.setattr(pace, "BATCH", 1.0)
+    assert go(config(TINY[:40]), tmp_path, rerun="all").ran == 40
+    assert len(list(tmp_path.glob("points/*/*.nc"))) >= 20 and list(tmp_path.glob("batches/*/*.nc"))
+    assert go(config(TINY[:40]), tmp_path).ran == 0
 
 
 def test_sizes_follow_the_pace():
