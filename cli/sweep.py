@@ -78,7 +78,7 @@ def sweep(
 def draw(result: Any) -> Any:
     """OUT/sweep.png, where it is missing or older than the dataset."""
     picture, dataset = result.out / "sweep.png", result.out / "sweep.nc"
-    if result.stopped == "terminated" or not dataset.exists():
+    if result.hurried or not dataset.exists():
         return None
     if not result.collected and picture.exists():
         return picture

@@ -18,6 +18,8 @@ from mpm.sweep.engine import Engine, Options, Points, Result, counts, exit_code
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Lock, Refused, Store
 
+QUICK = 200  # points that are collected even when told to leave at once
+
 
 def default_out(experiment: Any) -> Path:
     """`results/<config name>`."""
@@ -71,13 +73,13 @@ def execute(
                 run_engine(supervisor, options)
         finally:
             reporter.close()
-        quick = 2e-3 * len(lines) < 1.0
-        collected = gather() if supervisor.stopped != "terminated" or quick else False
+        hurried = supervisor.signals > 1  # two seconds are left at most, and the next sweep collects too
+        collected = gather() if not hurried or len(lines) < QUICK else False
     found = counts(points, lines, skipped(plan))
     stopped = supervisor.broken or supervisor.stopped
     if supervisor.broken:
         reporter.note(supervisor.broken)
-    return Result(store.out, lines, found, supervisor.ran, stopped, exit_code(found, supervisor.stopped), time.monotonic() - began, collected)
+    return Result(store.out, lines, found, supervisor.ran, stopped, exit_code(found, supervisor.stopped), time.monotonic() - began, collected, hurried)
 
 
 def partial(gather: Callable[[], bool], reporter: Reporter) -> Callable[[], None]:

@@ -64,6 +64,7 @@ class Result:
     exit_code: int
     seconds: float
     collected: bool = False
+    hurried: bool = False  # told to leave at once
 
 
 @dataclass
