@@ -7,9 +7,9 @@ import numpy as np
 from mpm.basis import second_moment
 from mpm.boundary import directions, extents
 from mpm.jit import kernel, role
-from mpm.materials import energy, enthalpy, stress
+from mpm.materials import energy, enthalpy, stress, value, warmed
 from mpm.materials.laws import Constant
-from mpm.state import Axisymmetric, Line, Plane, Thermal, Volume
+from mpm.state import Axisymmetric, Expansion, Latched, Line, Plane, Softening, Thermal, Volume
 from mpm.tensors import eigen2, eigen3
 from mpm.transfer import scatter_scalar
 
@@ -48,20 +48,20 @@ def strains(space, B):
 
 
 @kernel
-def stored(law, e, V0):
-    """Sum V0 psi [J]."""
+def stored(law, e, V0, theta):
+    """Sum V0 psi [J]; theta (N,) absolute temperatures."""
     total = 0.0
     for i in range(V0.shape[0]):
-        total += V0[i] * energy(law, e[i, 0], e[i, 1], e[i, 2])
+        total += V0[i] * energy(warmed(law, theta[i]), e[i, 0], e[i, 1], e[i, 2])
     return total
 
 
 @kernel
-def stresses(law, e, thermal):
-    """Principal Kirchhoff stresses (N, 3) [Pa]; thermal (N,) is gamma (Theta - Theta_0)."""
+def stresses(law, e, thermal, theta):
+    """Principal Kirchhoff stresses (N, 3) [Pa]; thermal (N,) is gamma (Theta - Theta_0), theta (N,) absolute temperatures."""
     out = np.empty_like(e)
     for i in range(e.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = stress(law, e[i, 0], e[i, 1], e[i, 2], thermal[i])
+        out[i, 0], out[i, 1], out[i, 2] = stress(warmed(law, theta[i]), e[i, 0], e[i, 1], e[i, 2], thermal[i])
     return out
 
 
@@ -72,6 +72,30 @@ def enthalpies(law, theta):
     for i in range(theta.shape[0]):
         out[i] = enthalpy(law, theta[i])
     return out
+
+
+def temperatures(body) -> np.ndarray:
+    """Absolute temperatures (N,) [K]."""
+    if isinstance(body.thermal, Thermal):
+        return body.thermal.zero + body.thermal.theta.astype(float)
+    return np.full(len(body.particles.m), body.thermal.temperature)
+
+
+def thermal_pressure(body) -> np.ndarray:
+    """gamma (Theta - Theta_0) of every particle [Pa]."""
+    return pressure_of(body.expansion, body)
+
+
+def pressure_of(expansion, body) -> np.ndarray:
+    """The same, of one expansion."""
+    if isinstance(expansion, Expansion):
+        return expansion.gamma * (body.thermal.theta.astype(float) + expansion.shift)
+    if isinstance(expansion, Latched):
+        held = np.maximum(expansion.most, np.minimum(body.thermal.theta, expansion.set)).astype(float)
+        return expansion.gamma * (held + expansion.shift)
+    if isinstance(expansion, Softening):
+        return np.array([value(expansion.E, t) for t in temperatures(body)]) * pressure_of(expansion.inner, body)
+    return np.zeros(len(body.particles.m))
 
 
 def heat_since(body, start: np.ndarray) -> float:

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mpm.diagnostics import stresses
-from mpm.state import Expansion, Latched, Thermal
+from mpm.diagnostics import stresses, temperatures, thermal_pressure
 
 PLACES = {3: ((0, 0), (1, 1), (2, 2)), 4: ((0, 0), (1, 1), (2, 2), (0, 1)), 6: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
 
@@ -39,16 +38,6 @@ class Motion:
         return (body if self.start is None else self.start(body)), errors
 
 
-def thermal_pressure(body) -> np.ndarray:
-    """gamma (Theta - Theta_0) of every particle [Pa]."""
-    if isinstance(body.expansion, Expansion):
-        return body.expansion.gamma * (body.thermal.theta.astype(float) + body.expansion.shift)
-    if isinstance(body.expansion, Latched):
-        held = np.maximum(body.expansion.most, np.minimum(body.thermal.theta, body.expansion.set)).astype(float)
-        return body.expansion.gamma * (held + body.expansion.shift)
-    return np.zeros(len(body.particles.m))
-
-
 def kirchhoff(body) -> np.ndarray:
     """Kirchhoff stress (N, K) [Pa], components as B has them (mpm.state)."""
     B = body.particles.B.astype(float)
@@ -58,7 +47,7 @@ def kirchhoff(body) -> np.ndarray:
         full[:, i, j] += B[:, k]
         full[:, j, i] = full[:, i, j]
     values, axes = np.linalg.eigh(full)
-    tau = stresses(body.elastic, 0.5 * np.log(values), thermal_pressure(body))
+    tau = stresses(body.elastic, 0.5 * np.log(values), thermal_pressure(body), temperatures(body))
     tensor = np.einsum("nik,nk,njk->nij", axes, tau, axes)
     return np.stack([tensor[:, i, j] for i, j in places], axis=1)
 
@@ -67,7 +56,7 @@ OBSERVED = {
     "displacement": lambda body, X: body.particles.x - X,
     "velocity": lambda body, X: body.particles.v,
     "stress": lambda body, X: kirchhoff(body),
-    "temperature": lambda body, X: body.thermal.zero + body.thermal.theta if isinstance(body.thermal, Thermal) else np.full(len(X), body.thermal.temperature),
+    "temperature": lambda body, X: temperatures(body),
 }
 
 

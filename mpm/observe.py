@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import extents
-from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses
-from mpm.error import Errors, thermal_pressure
+from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
+from mpm.error import Errors
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
 
@@ -107,9 +107,9 @@ class Recorder:
         elastic, pressure, strain = 0.0, 0.0, 0.0
         for body in scene.bodies:
             e = strains(scene.space, body.particles.B)
-            elastic += stored(body.elastic, e, body.particles.V0)
+            elastic += stored(body.elastic, e, body.particles.V0, temperatures(body))
             strain = max(strain, float(np.max(np.abs(e))))
-            tau = stresses(body.elastic, e, thermal_pressure(body))
+            tau = stresses(body.elastic, e, thermal_pressure(body), temperatures(body))
             pressure -= float(np.sum(body.particles.V0 * np.sum(tau, axis=1))) / 3
         yield "pressure_mean", pressure / np.sum(V)
         yield "strain_max", strain
@@ -189,12 +189,6 @@ def grid_fields(scene) -> dict[str, np.ndarray]:
     return fields
 
 
-def temperatures(body) -> np.ndarray:
-    if isinstance(body.thermal, Thermal):
-        return body.thermal.zero + body.thermal.theta.astype(float)
-    return np.full(len(body.particles.m), body.thermal.temperature)
-
-
 def particle_fields(scene) -> dict[str, np.ndarray]:
     """The particle fields asked for, bodies one after another."""
     made = {
@@ -216,7 +210,7 @@ def particle_fields(scene) -> dict[str, np.ndarray]:
 
 
 def principal_cauchy(scene, body) -> np.ndarray:
-    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body))
+    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body), temperatures(body))
     return tau / body.particles.J[:, None]
 
 

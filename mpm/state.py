@@ -143,6 +143,13 @@ class Latched(NamedTuple):
     set: float  # temperature at which it sets, less zero [K]
 
 
+class Softening(NamedTuple):
+    """Thermal stress of moduli that follow temperature: that of `inner`, whose gamma is for E = 1 Pa, times E(Theta)."""
+
+    inner: Any  # Expansion or Latched [1/K]
+    E: Any  # law of temperature [Pa]
+
+
 class NoHeating(NamedTuple):
     """Deformation does not heat."""
 
@@ -152,6 +159,15 @@ class Heating(NamedTuple):
 
     gamma: float  # stress-temperature modulus, zero where elastic heating is not named [Pa/K]
     fraction: float  # chi_d, zero where dissipation heating is not named [-]
+
+
+class GridHeating(NamedTuple):
+    """Elastic heating as a term of the heat equation on the grid (integrate/grid_heating.py), and the share of dissipation that becomes heat."""
+
+    gamma: float  # stress-temperature modulus [Pa/K]
+    fraction: float  # chi_d, zero where dissipation heating is not named [-]
+    capacity: np.ndarray  # (n,) scratch of one step [J/K]
+    rise: np.ndarray  # (n,) scratch of one step: heat [J], then rise [K]
 
 
 class NoSource(NamedTuple):
@@ -164,6 +180,19 @@ class Source(NamedTuple):
     X: np.ndarray  # (N, D) position at the start [m]
     t: np.ndarray  # (N,) time of the particle [s]
     law: Any
+
+
+class Load(NamedTuple):
+    """Nominal tractions on parts of a body's surface, and a drag (integrate/load.py)."""
+
+    force: np.ndarray  # (N, D) at full load [N]
+    dipole: np.ndarray  # (N, D, D) sum over pieces of force times offset from the particle, in the reference state [N m]
+    F: np.ndarray  # (N, D, D) deformation gradient of the particles that carry a force
+    loaded: np.ndarray  # (N,) whether a particle carries a force
+    t: np.ndarray  # (N,) time of the particle [s]
+    ramp: float  # time to full load [s]
+    rate: float  # drag: -rate m v [1/s]
+    scale: float  # of chunk.S: 1, or 1/(sum w d^2) with the MLS gradient [1, 1/m2]
 
 
 class NoAverage(NamedTuple):

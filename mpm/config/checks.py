@@ -37,8 +37,9 @@ def check(experiment: Any) -> list[Finding]:
 
 
 def unread(path: Path, slot: Slot) -> bool:
-    """Whether no rule reads the value of a path, so that changing it cannot break one: numbers and laws of materials and surfaces."""
-    return path[0] in ("materials", "surfaces") and slot.quantity is not None
+    """Whether no rule reads the value of a path, so that changing it cannot break one: numbers and laws of materials and surfaces,
+    but for E, which must be constant where there is elastic heating."""
+    return path[0] in ("materials", "surfaces") and slot.quantity is not None and path[-2:] != ("hencky", "E")
 
 
 def once(experiment: Any) -> Iterator[tuple]:
@@ -66,6 +67,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.surface, each("surfaces")),
     (scene.surface_side, each("surfaces")),
     (scene.surface_names, once),
+    (scene.load, each("loads")),
     (scene.walls, each("walls")),
     (scene.mechanics, once),
     (scene.gravity, once),
@@ -83,4 +85,5 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.stages, once),
     (point.clock, once),
     (point.output, once),
+    (point.heating, each("materials")),
 ]

@@ -14,6 +14,7 @@ from mpm.config.boundary import Surface, Wall
 from mpm.config.chart import Chart
 from mpm.config.laws import Constant
 from mpm.config.loading import Stage
+from mpm.config.loads import Load
 from mpm.config.materials import Material
 from mpm.config.model import Which
 from mpm.config.numerics import Clock, Grid, Method
@@ -35,6 +36,7 @@ class Experiment(Model):
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
     gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
+    loads: tuple[Load, ...] = doc((), description="tractions on bodies that move, and drag")
     loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")
     time: Clock
     method: Method = Method()

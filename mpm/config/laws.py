@@ -4,6 +4,7 @@ Constant   v                                                        written as a
 Table      values over temperatures, linear or PCHIP between them, constant outside
 Bump       base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2))     latent heat as apparent specific heat; `heat` is the integral of the bump
 Logistic   low + (high - low)/(1 + exp(-(T - at)/width))
+Porosity   of the aspect ratio p0 alone: by the plastic Poisson ratio (mpm.materials.porous)
 
 After validation a law is always one of these classes: dispatch with `isinstance` (each parameter has subclasses of its own that carry its unit).
 """
@@ -70,6 +71,14 @@ class Logistic(Kind):
     width: TemperatureDifference = doc(description="e-folding width of the step")
 
 
+class Porosity(Kind):
+    """By the plastic Poisson ratio nu_p = 1/2 (1 - porosity)^exponent, 1/3 sqrt((1 + nu_p)/(1/2 - nu_p)); the pores take up every change of volume."""
+
+    kind: ClassVar[str] = "porosity"
+    initial: Annotated[float, Quantity("", "porosity", least=0, most=0.999)] = doc(description="share of pores in the undeformed volume")
+    exponent: Annotated[float, Quantity("", "exponent", above=0, most=10)] = doc(2.0, description="exponent; about 2 in compacted powders")
+
+
 def of_unit(base: type[Kind], quantity: Quantity, /, **fields: Any) -> type[Kind]:
     """A law's class for one quantity; a name of this module, so that experiments can be sent to other processes."""
     name = base.__name__ + "".join(letter for letter in quantity.name.title() if letter.isalpha())
@@ -83,7 +92,7 @@ def of_unit(base: type[Kind], quantity: Quantity, /, **fields: Any) -> type[Kind
 class Law(Menu):
     """Annotation of a parameter that is a number or a function of temperature; every value in it has the parameter's unit and bounds."""
 
-    def __init__(self, quantity: Quantity):
+    def __init__(self, quantity: Quantity, *more: type[Kind]):
         value = Annotated[float, quantity]
         # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
         integral = quantity.unit.removesuffix("/K") if quantity.unit.endswith("/K") else f"{quantity.unit}*K" if quantity.unit else "K"
@@ -92,7 +101,7 @@ class Law(Menu):
         table = of_unit(Table, quantity, value=(tuple[value, ...], ...))
         bump = of_unit(Bump, quantity, base=(value, ...), heat=(area, ...))
         logistic = of_unit(Logistic, quantity, low=(value, ...), high=(value, ...))
-        super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic)
+        super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic, *more)
         self.quantity = quantity
 
     def check(self, value: Any) -> Any:
@@ -114,3 +123,9 @@ class Law(Menu):
 def law(unit: str, name: str, **bounds: Any) -> Any:
     """The type of a parameter that may depend on temperature: `kappa: law("W/m/K", "conductivity", least=0)`."""
     return Annotated[Constant | Table | Bump | Logistic, Law(replace(Quantity(unit, name), difference=True, **bounds))]
+
+
+@functools.cache
+def porous(unit: str, name: str, **bounds: Any) -> Any:
+    """The type of a parameter that may depend on temperature, or on porosity."""
+    return Annotated[Constant | Table | Bump | Logistic | Porosity, Law(replace(Quantity(unit, name), difference=True, **bounds), Porosity)]

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
-from mpm.config.laws import law
+from mpm.config.laws import law, porous
 from mpm.config.quantities import Density, Fraction, Modulus, PerKelvin, Pressure, Quantity, StressPerKelvin, Temperature
 
 PoissonRatio = Annotated[float, Quantity("", "Poisson ratio", above=-1, most=0.4999)]
@@ -17,7 +17,7 @@ class Hencky(Kind):
     """Hencky elasticity: Kirchhoff stress 2 mu eps + lam tr(eps), eps the logarithmic strain. Exactly one pair of moduli: E nu, lam mu, or K mu."""
 
     kind: ClassVar[str] = "hencky"
-    E: Modulus | None = doc(None, description="Young's modulus")
+    E: law("Pa", "Young's modulus", above=0) | None = doc(None, description="Young's modulus; may depend on temperature")
     nu: PoissonRatio | None = doc(None, description="Poisson ratio")
     lam: Pressure | None = doc(None, description="first Lamé constant")
     mu: Modulus | None = doc(None, description="shear modulus, second Lamé constant")
@@ -44,7 +44,7 @@ class Ellipse(Kind):
 
     kind: ClassVar[str] = "ellipse"
     M: law("Pa", "yield stress", above=0) = doc(description="von Mises stress at yield without pressure")
-    p0: law("", "aspect ratio", above=0) = doc(description="aspect ratio of the ellipse: the yield pressure is p0 M")
+    p0: porous("", "aspect ratio", above=0) = doc(description="aspect ratio of the ellipse: the yield pressure is p0 M; may follow temperature or porosity")
     eta: law("Pa*s", "viscosity", least=0) = doc(description="viscosity of the overstress")
     map: Annotated[Literal["radial", "clipped"], Choice()] = doc("radial", description="overstress that drives the flow; clipped: q <= M at any rate")
 
@@ -101,7 +101,11 @@ class LatchedExpansion(Kind):
 
 
 class ElasticHeating(Model):
-    """Heating and cooling by elastic change of volume, along the adiabat."""
+    """Heating and cooling by elastic change of volume."""
+
+    form: Annotated[Literal["adiabat", "grid"], Choice()] = doc(
+        "adiabat", description="along the adiabat at the particle, exact in any step; or as a source of the heat equation on the grid, for comparison"
+    )
 
 
 class DissipationHeating(Model):

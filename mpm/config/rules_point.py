@@ -84,6 +84,12 @@ def clock(experiment: Any) -> Iterator[Finding]:
         yield Finding(("time", "scale"), "a material point has no inertia, so no time to scale", "1", given=experiment.time.scale)
 
 
+def heating(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """The grid form of elastic heating needs a grid."""
+    if experiment.grid.dimension == 0 and item.heating is not None and item.heating.elastic is not None and item.heating.elastic.form == "grid":
+        yield Finding(("materials", name, "heating", "elastic", "form"), "a material point has no grid", ["adiabat"], given="grid")
+
+
 def output(experiment: Any) -> Iterator[Finding]:
     """One point has no fields."""
     if experiment.grid.dimension == 0 and experiment.output.snapshots is not None:

@@ -101,6 +101,10 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
     if item.heating is not None and item.heating.elastic is not None and item.expansion is not None and item.expansion.kind == "latched":
         said = "latched expansion is not reversible, so it has no elastic heating"
         yield Finding(("materials", name, "heating", "elastic"), said, "linear, modulus or source", on_key=True)
+    compressed = item.heating is not None and item.heating.elastic is not None and item.elastic is not None
+    if compressed and item.elastic.E is not None and item.elastic.E.kind != "constant":
+        said = "elastic heating is known for constant moduli only: E that follows temperature stores work of its own"
+        yield Finding(("materials", name, "heating", "elastic"), said, "a constant E, or no elastic heating", on_key=True)
     if item.heating is not None:
         for part, section in (("elastic", "expansion"), ("dissipation", "flow")):
             if getattr(item.heating, part) is not None and getattr(item, section) is None:
@@ -139,6 +143,24 @@ def surface_names(experiment: Any) -> Iterator[Finding]:
     for index, item in enumerate(experiment.surfaces):
         if item is not MISSING and item.name is not None and seen.setdefault(item.name, index) != index:
             yield Finding(("surfaces", index, "name"), "two surfaces have the same name", "a name of its own", given=item.name)
+
+
+def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """The body is there and moves, the traction has the grid's directions, the side exists."""
+    known, dimension = experiment.bodies, experiment.grid.dimension
+    if item.of not in known:
+        yield Finding(("loads", index, "of"), "there is no such body", list(known), near(item.of, known), given=item.of)
+        return
+    name = known[item.of].material
+    if dimension == 0:
+        yield Finding(("loads", index), "a material point has no surface to load", "loading: [{stress: {zz: ...}}]", on_key=True)
+    elif name in experiment.materials and experiment.materials[name].elastic is None:
+        yield Finding(("loads", index), f"{name!r} has no elastic law, so the body cannot move", f"an elastic section in materials.{name}", on_key=True)
+    elif item.traction is not None:
+        yield from vector(experiment, ("loads", index, "traction", "nominal"), item.traction.nominal, "the traction")
+        if item.side not in SURFACE_SIDES[dimension]:
+            sides = SURFACE_SIDES[dimension]
+            yield Finding(("loads", index, "side"), f"there is no such side in dimension {dimension}", list(sides), near(item.side, sides), given=item.side)
 
 
 def used(experiment: Any) -> list[Any]:

@@ -11,7 +11,7 @@ import math
 from mpm.jit import role
 from mpm.materials import LAWS
 from mpm.materials.laws import Constant, enthalpy, temperature_of, value
-from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, GridHeating, Heating, Isothermal, Latched, NoExpansion, NoHeating, Softening, Thermal
 
 
 @role
@@ -71,6 +71,11 @@ def _(expansion, thermal, i):
     return expansion.gamma * (max(expansion.most[i], min(thermal.theta[i], expansion.set)) + expansion.shift)
 
 
+@thermal_stress.register(Softening)
+def _(expansion, thermal, i):
+    return value(expansion.E, temperature(thermal, i)) * thermal_stress(expansion.inner, thermal, i)
+
+
 @role
 def latch(expansion, thermal, i):
     """Remember what particle i has reached, at the end of a step."""
@@ -86,6 +91,11 @@ def _(expansion, thermal, i):
 @latch.register(Latched)
 def _(expansion, thermal, i):
     expansion.most[i] = max(expansion.most[i], min(thermal.theta[i], expansion.set))
+
+
+@latch.register(Softening)
+def _(expansion, thermal, i):
+    latch(expansion.inner, thermal, i)
 
 
 @role
@@ -104,5 +114,13 @@ def _(heating, thermal, i, density, stretched, dissipated):
     theta = thermal.zero + thermal.theta[i]
     alpha = value(thermal.alpha, theta)
     gained = density * alpha * theta * math.expm1(-heating.gamma / (density * alpha) * stretched) + heating.fraction * dissipated
+    thermal.theta[i] += rise(thermal.alpha, theta, gained / density)
+    return gained
+
+
+@heat_locally.register(GridHeating)
+def _(heating, thermal, i, density, stretched, dissipated):
+    theta = thermal.zero + thermal.theta[i]
+    gained = heating.fraction * dissipated
     thermal.theta[i] += rise(thermal.alpha, theta, gained / density)
     return gained

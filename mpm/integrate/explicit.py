@@ -13,10 +13,11 @@ from numba import literal_unroll
 from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
+from mpm.integrate.grid_heating import compress_all
+from mpm.integrate.load import act
 from mpm.integrate.locking import average_all, relax
 from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
 from mpm.integrate.sharpen import sharpen
-from mpm.integrate.source import act
 from mpm.jit import kernel
 from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
@@ -42,6 +43,7 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
         update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
         sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
         average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
+        compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
         last = step == steps - 1
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
             return

@@ -10,7 +10,7 @@ import math
 from mpm.basis import inverse_moment
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
 from mpm.jit import kernel, role
-from mpm.materials import FLOW, NoFlow, flow, stress
+from mpm.materials import FLOW, NoFlow, flow, settled, stress, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED, RETURN_MAP
 from mpm.state import Axisymmetric, Line, NoExchange, Plane, Surface, Volume
 from mpm.tensors import compose2, compose3, dilation1, dilation2, dilation3, eigen2, eigen3, push1, push2, push3
@@ -53,7 +53,8 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
     thermal = thermal_stress(body.expansion, body.thermal, i)
     lost = 0.0
     if dt > 0.0:
-        e1, e2, e3, lost, ok = flow(body.flow, body.elastic, e1, e2, e3, thermal, temperature(body.thermal, i), dt)
+        theta = temperature(body.thermal, i)
+        e1, e2, e3, lost, ok = flow(settled(body.flow, body.particles.J[i]), warmed(body.elastic, theta), e1, e2, e3, thermal, theta, dt)
         if not ok:
             fail(report, RETURN_MAP, i)
         density = body.particles.m[i] / body.particles.V0[i]
@@ -63,7 +64,7 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
         latch(body.expansion, body.thermal, i)
         thermal = thermal_stress(body.expansion, body.thermal, i)
     report[STRAIN] = min(report[STRAIN], e1, e2, e3)
-    t1, t2, t3 = stress(body.elastic, e1, e2, e3, thermal)
+    t1, t2, t3 = stress(warmed(body.elastic, temperature(body.thermal, i)), e1, e2, e3, thermal)
     return e1, e2, e3, t1, t2, t3
 
 

@@ -3,6 +3,7 @@
 elastic wave      1/2 h sqrt(R0/(d lam + 2 mu)) / sqrt(1 + eps_c) / sqrt(1 + |eps_min|)      isolated particles included
 advection         h/(2 |v|)                                                                  half a cell a step
 velocity gradient 1/(4 |grad v|)                                                             half of the guard in respond.py
+drag              1/(2 rate)                                                                 a quarter of the limit of an explicit drag
 heat              1/(rate_conduction + rate_exchange), with
 conduction        kappa J/(0.4 R0 alpha h^2)
 surface exchange  2 beta/(R0 alpha h)                                                        beta in the step: large beta, small step
@@ -17,10 +18,10 @@ import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.integrate.respond import RATE, SPEED, STRAIN, SWELL
-from mpm.materials import Constant, moduli, value
-from mpm.state import Expansion, Heating, NoExchange, Radiation, Thermal
+from mpm.materials import Constant, HenckyWarm, moduli, value, warmed
+from mpm.state import Expansion, GridHeating, Heating, Load, NoExchange, Radiation, Thermal
 
-WAVE, CONDUCTION, EXCHANGE, PACE = 0.5, 0.4, 2.0, 0.15
+WAVE, CONDUCTION, EXCHANGE, PACE, DRAG = 0.5, 0.4, 2.0, 0.15, 0.5
 
 
 @dataclass(frozen=True)
@@ -52,13 +53,15 @@ def limits(space, D, bodies, reports) -> Limits:
 
     for body, report in zip(bodies, reports, strict=True):
         R0 = float(body.particles.m[0] / body.particles.V0[0])
-        lam, mu = moduli(body.elastic)
+        lam, mu = stiffest(body)
         soften = (1.0 + coupling(body, lam, mu, R0)) * (1.0 + abs(min(report[STRAIN], 0.0)))
         keep(mechanical, "elastic wave", WAVE * h * np.sqrt(R0 / (D * lam + 2 * mu) / soften))
         if report[SPEED] > 0:
             keep(mechanical, "advection", 0.5 * h / np.sqrt(report[SPEED]))
         if report[RATE] > 0:
             keep(mechanical, "velocity gradient", 0.25 / report[RATE])
+        if isinstance(body.source, Load) and body.source.rate > 0:
+            keep(mechanical, "drag", DRAG / body.source.rate)
         if isinstance(body.thermal, Thermal):
             kappa, alpha = conductance(body.thermal)
             J = max(report[SWELL], float(np.max(body.particles.J)))
@@ -69,6 +72,16 @@ def limits(space, D, bodies, reports) -> Limits:
             if beta > 0:
                 keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * beta * max(J, 1.0)))
     return Limits(mechanical, heat, pace)
+
+
+def stiffest(body) -> tuple[float, float]:
+    """Lame constants (lam, mu) [Pa] of the stiffest of the particles."""
+    if not isinstance(body.elastic, HenckyWarm):
+        return moduli(body.elastic)
+    if not isinstance(body.thermal, Thermal):
+        return moduli(warmed(body.elastic, body.thermal.temperature))
+    low, high = float(np.min(body.thermal.theta)) + body.thermal.zero, float(np.max(body.thermal.theta)) + body.thermal.zero
+    return max((moduli(warmed(body.elastic, t)) for t in np.linspace(low, high, 33)), key=lambda pair: pair[1])
 
 
 def strongest(surface, thermal) -> float:
@@ -84,7 +97,7 @@ def strongest(surface, thermal) -> float:
 
 def coupling(body, lam, mu, R0) -> float:
     """Thermoelastic coupling number gamma^2 Theta/(R0 alpha (lam + 2 mu)): elastic heating stiffens the wave (physics.md 0)."""
-    if not (isinstance(body.expansion, Expansion) and isinstance(body.heating, Heating) and body.heating.gamma > 0):
+    if not (isinstance(body.expansion, Expansion) and isinstance(body.heating, Heating | GridHeating) and body.heating.gamma > 0):
         return 0.0
     theta = body.thermal.zero + float(np.max(body.thermal.theta))
     return body.expansion.gamma * body.heating.gamma * theta / (R0 * value(body.thermal.alpha, theta) * (lam + 2 * mu))

@@ -6,6 +6,7 @@ Roles (the law chooses the function; all work compiled and in plain Python)
           moduli(law) -> lam, mu
           flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
                                                                                       flow laws: no_flow, radial, clipped
+          warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
 Shapes    e: principal elastic Hencky strains [-]; t: principal Kirchhoff stresses [Pa], in the same order, any order
           thermal = gamma (Theta - Theta_0) [Pa], 0.0 without expansion; theta: temperature [K]; dt [s]
@@ -19,15 +20,17 @@ from mpm.materials.clipped import EllipseClipped
 from mpm.materials.hencky import Hencky
 from mpm.materials.laws import Bump, Constant, Logistic, Table, table
 from mpm.materials.no_flow import NoFlow
+from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.returns import return_map
-from mpm.materials.roles import energy, enthalpy, flow, moduli, stress, temperature_of, value
+from mpm.materials.roles import energy, enthalpy, flow, moduli, settled, stress, temperature_of, value, warmed
+from mpm.materials.warm import HenckyWarm
 
 ELASTIC = (Hencky,)
 FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
-    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "Logistic", "NoFlow", "Table",
-    "energy", "enthalpy", "flow", "moduli", "return_map", "stress", "table", "temperature_of", "value",
+    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NoFlow", "Porous", "Table",
+    "energy", "enthalpy", "flow", "moduli", "return_map", "settled", "stress", "table", "temperature_of", "value", "warmed",
 ]  # fmt: skip

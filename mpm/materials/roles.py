@@ -36,6 +36,24 @@ def flow(law, elastic, e1, e2, e3, thermal, theta, dt):
 
 
 @role
+def warmed(law, theta):
+    """The elastic law at temperature theta [K]: what `stress`, `energy`, `moduli` and `flow` are asked with. Itself where nothing follows temperature."""
+    raise missing(law, "warmed")
+
+
+@role
+def settled(law, J):
+    """The flow law at a total volume ratio J: itself where nothing follows porosity."""
+    raise missing(law, "settled")
+
+
+@role
+def at_volume(law, J):
+    """A parameter at a total volume ratio J: itself where it does not follow porosity."""
+    raise missing(law, "at_volume")
+
+
+@role
 def value(law, theta):
     """The parameter at temperature theta [K]."""
     raise missing(law, "value")

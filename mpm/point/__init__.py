@@ -4,7 +4,8 @@ A batch of points with the same kinds of laws is one structure of arrays; one co
 
 state.py    Matter (laws and state of a batch), Program (what is prescribed, when), columns of the record
 pick.py     role `pick(law, i)`: the law of point i from a law of arrays; `stack` makes such a law
-step.py     roles `exchange`, `relaxation`; one step: heat, strain, flow, heating, stress; directions with prescribed stress by Newton
+heat.py     temperature and enthalpy of a point; role `exchange`
+step.py     role `relaxation`; one step: heat, strain, flow, heating, stress; directions with prescribed stress by Newton
 march.py    the loop over points, output times and steps
 run.py      solve(...): arrays -> Runs
 

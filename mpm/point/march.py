@@ -6,8 +6,9 @@ import numpy as np
 
 from mpm.heat.local import temperature, thermal_stress
 from mpm.jit import kernel
-from mpm.materials import energy, stress
+from mpm.materials import energy, stress, warmed
 from mpm.outcome import COMPLETED, INVERTED, NON_FINITE, OVERSTRETCHED
+from mpm.point.heat import above, content, datum, exchange
 from mpm.point.pick import pick
 from mpm.point.state import (
     CAUCHY,
@@ -28,7 +29,7 @@ from mpm.point.state import (
     P,
     Q,
 )  # fmt: skip
-from mpm.point.step import content, exchange, shares, step
+from mpm.point.step import shares, step
 
 MOST = 1000.0  # automatic steps between two output times, at most: what relaxes faster is followed by its limit, which is stable
 LONGEST = math.log(1e3)  # |ln J| past which a point has left the model
@@ -70,7 +71,7 @@ def enter(one, progress, i, stage, now):
     entered = progress.entered[i]
     progress.stage[i] = stage
     entered[0], entered[1], entered[2], entered[3] = now, one.strain[0], one.strain[1], one.strain[2]
-    entered[4] = temperature(one.thermal, 0)
+    entered[4] = above(one.thermal)
 
 
 @kernel
@@ -97,7 +98,7 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
     kind, value, entered = program.kind[i, stage], program.value[i, stage], progress.entered[i]
     goal = program.temperature[i, stage]
     held = not math.isnan(goal)
-    ramp = (goal - entered[4]) / (program.until[i, stage] - entered[0]) if held else 0.0
+    ramp = ((goal - datum(one.thermal)) - entered[4]) / (program.until[i, stage] - entered[0]) if held else 0.0
     speed = 0.0
     for k in range(3):
         rates[k] = 0.0
@@ -130,7 +131,7 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
             base = entered[4] + ramp * (after - entered[0])
         else:
             gained = exchange(one.exchange, one.thermal, one.density, math.exp(one.strain[0] + one.strain[1] + one.strain[2]), dt)
-            base = temperature(one.thermal, 0)
+            base = above(one.thermal)
         lost, heated, ok = step(one, one.elastic_strain, one.strain, d, kind, value, base, held, dt, work)
         progress.steps[i] += 1
         if not ok:
@@ -168,7 +169,8 @@ def cross(program, progress, i, before, after, start, dt):
 def record(one, progress, i, row):
     """One row of output: COLUMNS of mpm.point.state."""
     e, total = one.elastic_strain, one.strain
-    t1, t2, t3 = stress(one.elastic, e[0], e[1], e[2], thermal_stress(one.expansion, one.thermal, 0))
+    elastic = warmed(one.elastic, temperature(one.thermal, 0))
+    t1, t2, t3 = stress(elastic, e[0], e[1], e[2], thermal_stress(one.expansion, one.thermal, 0))
     J = math.exp(total[0] + total[1] + total[2])
     for k in range(3):
         row[STRAIN + k], row[ELASTIC + k] = total[k], e[k]
@@ -176,7 +178,7 @@ def record(one, progress, i, row):
     row[P] = -(t1 + t2 + t3) / 3.0
     row[Q] = math.sqrt(0.5 * ((t1 - t2) * (t1 - t2) + (t2 - t3) * (t2 - t3) + (t3 - t1) * (t3 - t1)))
     row[SWELL] = J
-    row[ENERGY] = energy(one.elastic, e[0], e[1], e[2])
+    row[ENERGY] = energy(elastic, e[0], e[1], e[2])
     row[DISSIPATION] = progress.sums[i, 0]
     row[TEMPERATURE] = temperature(one.thermal, 0)
     row[HEAT] = one.density * (content(one.thermal) - progress.zero[i])

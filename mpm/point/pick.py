@@ -6,9 +6,9 @@ So kinds stay types and values stay run-time arguments: a batch of any size and 
 import numpy as np
 
 from mpm.jit import role
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, Table
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NoFlow, Porous, Table
 from mpm.point.state import Lumped, NoConduction, Rigid
-from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, Softening, Thermal
 
 
 @role
@@ -28,6 +28,21 @@ for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating):
 @pick.register(Hencky)
 def _(law, i):
     return Hencky(law.mu[i], law.lam[i])
+
+
+@pick.register(HenckyWarm)
+def _(law, i):
+    return HenckyWarm(pick(law.one, i), pick(law.E, i))
+
+
+@pick.register(Porous)
+def _(law, i):
+    return Porous(law.solid[i], law.exponent[i])
+
+
+@pick.register(Softening)
+def _(law, i):
+    return Softening(pick(law.inner, i), pick(law.E, i))
 
 
 @pick.register(Constant)

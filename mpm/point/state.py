@@ -64,10 +64,10 @@ class Progress(NamedTuple):
 
     row: np.ndarray  # (N,) last row written
     stage: np.ndarray  # (N,)
-    entered: np.ndarray  # (N, 5) at the start of the stage: time, three strains, temperature
+    entered: np.ndarray  # (N, 5) at the start of the stage: time, three strains, temperature less its zero
     rate: np.ndarray  # (N, 3) rate of strain of the last step, the first guess of the next [1/s]
     sums: np.ndarray  # (N, 3) dissipated, exchanged, heated locally [J/m3]
-    zero: np.ndarray  # (N,) specific enthalpy at the start [J/kg]
+    zero: np.ndarray  # (N,) specific enthalpy at the start, less that at the zero of temperature [J/kg]
     crossed: np.ndarray  # (N, K) time of the first crossing [s], NaN before
     steps: np.ndarray  # (N,)
     code: np.ndarray  # (N,) mpm.outcome, or NO_EQUILIBRIUM

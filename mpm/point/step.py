@@ -7,11 +7,11 @@ stress to round-off. Slopes by differences, so that every law and coupling is se
 
 import math
 
-from mpm.heat.local import heat_locally, latch, rise, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
 from mpm.jit import kernel, role
-from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, energy, enthalpy, flow, moduli, stress, value
-from mpm.point.state import STRESS, Lumped, Rigid
-from mpm.state import Isothermal, NoExchange, Thermal
+from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, energy, flow, moduli, settled, stress, value, warmed
+from mpm.point.heat import put, time_constant
+from mpm.point.state import STRESS, Rigid
 
 EPS = 2.3e-16
 RELAXATION, YIELD, CONSTANT, RAMP = 100.0, 20.0, 100.0, 1.0  # steps a relaxation time, a yield strain, a time constant; kelvin a step
@@ -32,83 +32,9 @@ def _(law):
     return math.inf, math.inf
 
 
-@role
-def put(thermal, theta):
-    """Set the temperature of the point [K]."""
-    raise TypeError(f"no temperature in {type(thermal).__name__}")
-
-
-@put.register(Isothermal)
-def _(thermal, theta):
-    return None
-
-
-@put.register(Thermal)
-def _(thermal, theta):
-    thermal.theta[0] = theta - thermal.zero
-
-
-@role
-def content(thermal):
-    """Specific enthalpy [J/kg]; 0 without heat."""
-    raise TypeError(f"no heat in {type(thermal).__name__}")
-
-
-@content.register(Isothermal)
-def _(thermal):
-    return 0.0
-
-
-@content.register(Thermal)
-def _(thermal):
-    return enthalpy(thermal.alpha, thermal.zero + thermal.theta[0])
-
-
-@role
-def exchange(law, thermal, density, swell, dt):
-    """Exchange heat for `dt`; returns the heat gained [J/m3 of reference]."""
-    raise TypeError(f"no exchange {type(law).__name__}")
-
-
-@exchange.register(NoExchange)
-def _(law, thermal, density, swell, dt):
-    return 0.0
-
-
-@exchange.register(Lumped)
-def _(law, thermal, density, swell, dt):
-    # Exact for constant alpha. Otherwise alpha of the middle of the step (order 2), the heat through enthalpy and never past the surroundings.
-    theta = thermal.zero + thermal.theta[0]
-    gap = law.outside - theta
-    flux = law.conductance * swell ** (2.0 / 3.0)
-    capacity = density * value(thermal.alpha, theta)
-    half = -capacity * gap * math.expm1(-0.5 * dt * flux / capacity)
-    capacity = density * value(thermal.alpha, theta + rise(thermal.alpha, theta, half / density))
-    heat = -capacity * gap * math.expm1(-dt * flux / capacity)
-    most = density * (enthalpy(thermal.alpha, law.outside) - enthalpy(thermal.alpha, theta))
-    if abs(heat) >= abs(most):
-        thermal.theta[0] = law.outside - thermal.zero
-        return most
-    thermal.theta[0] += rise(thermal.alpha, theta, heat / density)
-    return heat
-
-
-@role
-def time_constant(law, thermal, density):
-    """R0 alpha/conductance of the lumped body [s]; inf without exchange."""
-    raise TypeError(f"no exchange {type(law).__name__}")
-
-
-@time_constant.register(NoExchange)
-def _(law, thermal, density):
-    return math.inf
-
-
-@time_constant.register(Lumped)
-def _(law, thermal, density):
-    if not 0.0 < law.conductance < math.inf:
-        return math.inf
-    return density * value(thermal.alpha, thermal.zero + thermal.theta[0]) / law.conductance
+@warmed.register(Rigid)
+def _(law, theta):
+    return law
 
 
 @role
@@ -123,7 +49,7 @@ def _(law, elastic, theta):
 
 
 def relaxation_ellipse(law, elastic, theta):
-    lam, mu = moduli(elastic)
+    lam, mu = moduli(warmed(elastic, theta))
     K, M, p0, eta = lam + 2.0 * mu / 3.0, value(law.M, theta), value(law.p0, theta), value(law.eta, theta)
     return min(eta / (3.0 * mu), eta * p0 * p0 / K), M * min(1.0 / (3.0 * mu), p0 / K)
 
@@ -137,7 +63,9 @@ def shares(matter, speed, ramp):
     """Automatic limits of the step [s]: fractions of the relaxation time, of the time to strain by the yield strain at the rate `speed` [1/s], of a kelvin at
     the rate `ramp` [K/s] of a prescribed temperature (laws of temperature follow it), and of the time constant of exchange. Without viscosity: no relaxation.
     """
-    time, strain = relaxation(matter.flow, matter.elastic, temperature(matter.thermal, 0))
+    total = matter.strain
+    law = settled(matter.flow, math.exp(total[0] + total[1] + total[2]))
+    time, strain = relaxation(law, matter.elastic, temperature(matter.thermal, 0))
     relax = time / RELAXATION if time > 0.0 else math.inf
     bend = strain / (YIELD * speed) if speed > 0.0 else math.inf
     warm = RAMP / ramp if ramp > 0.0 and strain < math.inf else math.inf
@@ -148,16 +76,18 @@ def shares(matter, speed, ramp):
 def answer(matter, e, d, base, held, dt):
     """Elastic strains and Kirchhoff stresses at the end of a step: (e1, e2, e3, t1, t2, t3, dissipated, heated, ok) [-, Pa, J/m3].
 
-    e: elastic strains before, d: increments of total strain, base: temperature before local heating [K]; `held` keeps it there.
+    e: elastic strains before, d: increments of total strain, base: temperature less its zero before local heating [K]; `held` keeps it there.
     Depends on nothing else; leaves the temperature of the end of the step in `matter.thermal`.
     """
     put(matter.thermal, base)
     thermal = thermal_stress(matter.expansion, matter.thermal, 0)
-    e1, e2, e3, lost, ok = flow(matter.flow, matter.elastic, e[0] + d[0], e[1] + d[1], e[2] + d[2], thermal, temperature(matter.thermal, 0), dt)
+    theta, total = temperature(matter.thermal, 0), matter.strain
+    law = settled(matter.flow, math.exp((total[0] + d[0]) + (total[1] + d[1]) + (total[2] + d[2])))
+    e1, e2, e3, lost, ok = flow(law, warmed(matter.elastic, theta), e[0] + d[0], e[1] + d[1], e[2] + d[2], thermal, theta, dt)
     gained = heat_locally(matter.heating, matter.thermal, 0, matter.density, (e1 - e[0]) + (e2 - e[1]) + (e3 - e[2]), lost)
     if held:
         put(matter.thermal, base)
-    t1, t2, t3 = stress(matter.elastic, e1, e2, e3, thermal_stress(matter.expansion, matter.thermal, 0))
+    t1, t2, t3 = stress(warmed(matter.elastic, temperature(matter.thermal, 0)), e1, e2, e3, thermal_stress(matter.expansion, matter.thermal, 0))
     return e1, e2, e3, t1, t2, t3, lost, gained, ok
 
 
@@ -202,7 +132,7 @@ def solve3(A, r, x):
 def equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
     """Find the increments d[k] of the directions whose stress is prescribed, from a first guess in d. work (8, 3). False: no equilibrium was found."""
     A, r, x, near, trial = work[0:3], work[3], work[4], work[5], work[6]
-    lam, mu = moduli(matter.elastic)
+    lam, mu = moduli(warmed(matter.elastic, temperature(matter.thermal, 0)))
     stiff = lam + 2.0 * mu
     worst, ok = residual(matter, e, d, total, kind, target, base, held, dt, r)
     if not ok:
@@ -269,5 +199,3 @@ def step(matter, e, total, d, kind, target, base, held, dt, work):
     for k in range(3):
         total[k] += d[k]
     return lost, gained, ok
-
-

@@ -11,9 +11,10 @@ import numpy as np
 from mpm.basis import BASES
 from mpm.boundary import KINDS, extents
 from mpm.error import Motion
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, Logistic, NoFlow, table
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NoFlow, Porous, table
 from mpm.observe import Watch
 from mpm.scene.exchange import exchanging_surface
+from mpm.scene.load import loaded
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
 from mpm.scene.shapes import cells, shape
@@ -24,6 +25,7 @@ from mpm.state import (
     Axisymmetric,
     Body,
     Expansion,
+    GridHeating,
     Heating,
     Isothermal,
     Latched,
@@ -33,6 +35,7 @@ from mpm.state import (
     NoHeating,
     Particles,
     Plane,
+    Softening,
     Thermal,
     Volume,
 )  # fmt: skip
@@ -52,6 +55,8 @@ def law(model):
         return table(model.temperature, model.value, model.interpolation)
     if kind == "bump":
         return Bump(model.base, model.heat, model.at, model.width)
+    if kind == "porosity":
+        return Porous(1.0 - model.initial, model.exponent)
     return Logistic(model.low, model.high, model.at, model.width)
 
 
@@ -91,11 +96,12 @@ def sample(experiment, body):
     return cells(outline, edges, radial=grid.dimension == "axisymmetric")
 
 
-def elastic_law(model) -> Hencky:
-    """Lame constants of whichever pair was given."""
+def elastic_law(model):
+    """Lame constants of whichever pair was given; of E = 1, with its law, where E follows temperature."""
     if model.E is not None:
-        E = model.E
-        return Hencky(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
+        E = float(model.E.value) if type(model.E).kind == "constant" else 1.0
+        found = Hencky(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
+        return found if type(model.E).kind == "constant" else HenckyWarm(found, law(model.E))
     if model.lam is not None:
         return Hencky(model.mu, model.lam)
     return Hencky(model.mu, model.K - 2 * model.mu / 3)
@@ -109,15 +115,18 @@ def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
     return gamma if gamma is not None else expansion.c * elastic.lam
 
 
-def expansion_law(model, elastic: Hencky, theta: np.ndarray, zero: float):
-    """The run-time expansion; `theta` (N,) are temperatures at the start, less `zero`."""
+def expansion_law(model, elastic, theta: np.ndarray, zero: float):
+    """The run-time expansion; `theta` (N,) are temperatures at the start, less `zero`. A coefficient follows the moduli, a modulus gamma does not."""
+    if isinstance(elastic, HenckyWarm):
+        inner = expansion_law(model, elastic.one, theta, zero)
+        return inner if getattr(model, "gamma", None) is not None else Softening(inner, elastic.E)
     gamma, shift = stress_temperature_modulus(model, elastic), zero - model.reference
     if type(model).kind != "latched":
         return Expansion(gamma, shift)
     return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)
 
 
-def moving_body(experiment, name: str, zero: float):
+def moving_body(experiment, name: str, zero: float, space):
     """(Body, its Surroundings or None): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
@@ -149,8 +158,11 @@ def moving_body(experiment, name: str, zero: float):
         expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
     if material.heating is not None:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
-        heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
-    return Body(particles, thermal, surface, elastic, flow, expansion, heating), surroundings
+        fraction = material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0
+        on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
+        heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
+    source = loaded(experiment, name, cut, space, gradient_operator(experiment))
+    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings
 
 
 def spin_tensor(omega, D: int) -> np.ndarray:
@@ -197,7 +209,7 @@ def build(experiment, exact=None) -> Scene:
     scheme, blend, affine, sharp = schemes(experiment)
     D = experiment.grid.directions
     times = output_times(experiment)
-    bodies, surroundings = zip(*(moving_body(experiment, name, zero) for name in names), strict=True)
+    bodies, surroundings = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)

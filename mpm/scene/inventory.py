@@ -3,6 +3,7 @@
 import math
 
 from mpm.config.boundary import EXCHANGES
+from mpm.config.loads import LOADS
 
 
 def physics(experiment) -> dict[str, list[str]]:
@@ -17,9 +18,10 @@ def physics(experiment) -> dict[str, list[str]]:
             present |= {f"heating: {part}" for part in ("elastic", "dissipation") if getattr(material.heating, part) is not None}
     present |= {f"exchange: {kind}" for kind in EXCHANGES for entry in experiment.surfaces if getattr(entry, kind) is not None}
     present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
+    present |= {f"load: {kind}" for kind in LOADS for entry in experiment.loads if getattr(entry, kind) is not None}
     present |= {"gravity"} if experiment.gravity is not None else set()
     said = {text.split(":")[0] for text in present}
-    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "gravity")
+    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "load", "gravity")
     return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
 
 

@@ -70,6 +70,10 @@ def surface(model, S: float):
     )
 
 
+def load(model, S: float):
+    return model.model_copy(update={"traction": changed(model.traction, 1 / S, "ramp"), "drag": changed(model.drag, S, "rate")})
+
+
 def hurried(experiment):
     """The experiment on the fast clock; itself where `time.scale` is 1."""
     S = experiment.time.scale
@@ -81,6 +85,7 @@ def hurried(experiment):
             "bodies": {name: changed(body, S, "velocity", "angular_velocity") for name, body in experiment.bodies.items()},
             "materials": {name: material(one, S) for name, one in experiment.materials.items()},
             "surfaces": tuple(surface(one, S) for one in experiment.surfaces),
+            "loads": tuple(load(one, S) for one in experiment.loads),
             "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S, "beta", "temperature")}) for side, wall in experiment.walls.items()},
             "time": changed(experiment.time, 1 / S, "end", "step").model_copy(update={"scale": 1.0}),
             "method": changed(experiment.method, 1 / S, "heat_step"),

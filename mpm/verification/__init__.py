@@ -47,9 +47,18 @@ EXACT = {
     "stefan": stefan.exact,
 }
 
+LOADED = ("cooks_membrane",)  # scenes that have loads of their own
+
 
 def exact_solution(experiment):
     """The solution that the config names, or None. ValueError where the scene is not the problem."""
     if experiment.exact is None:
         return None
-    return EXACT[type(experiment.exact).kind](experiment)
+    kind = type(experiment.exact).kind
+    for name, material in experiment.materials.items():
+        E = material.elastic.E if material.elastic is not None else None
+        if E is not None and type(E).kind != "constant":
+            raise ValueError(f"{kind} needs a constant E, not the {type(E).kind} of {name}")
+    if experiment.loads and kind not in LOADED:
+        raise ValueError(f"{kind} is a scene without loads")
+    return EXACT[kind](experiment)

@@ -107,7 +107,7 @@ def test_extends_merges_deeply(tmp_path, block):
     (tmp_path / "top.yaml").write_text("extends: sub/middle.yaml\nwalls: {bottom: slip, left: contact}\nmaterials: {dough: {elastic: {hencky: {nu: 0.2}}}}\n")
     experiment = load(tmp_path / "top.yaml")
     dough = experiment.materials["dough"]
-    assert (dough.density, dough.flow, dough.elastic.nu, dough.elastic.E) == (900.0, None, 0.2, 1e4)
+    assert (dough.density, dough.flow, dough.elastic.nu, dough.elastic.E.value) == (900.0, None, 0.2, 1e4)
     assert (experiment.time.safety, experiment.time.end) == (0.5, 0.1)
     assert {side: wall.kind for side, wall in experiment.walls.items()} == {"bottom": "slip", "left": "contact"}
 

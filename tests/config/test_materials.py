@@ -20,7 +20,7 @@ def test_pairs_of_moduli(block, pair):
     [
         ({"E": 1e4}, "two moduli are needed, found E"),
         ({}, "two moduli are needed, found none"),
-        ({"E": {"table": {"temperature": [300, 400], "value": [1e4, 1e3]}}, "nu": 0}, "a number"),
+        ({"K": {"table": {"temperature": [300, 400], "value": [1e4, 1e3]}}, "mu": 1e3}, "a number"),
         ({"E": 1e4, "nu": 0.3, "mu": 1}, "found E nu mu"),
         ({"lam": -1e4, "mu": 1e3}, "bulk modulus"),
         ({"E": 1e4, "nu": 0.5}, "Poisson ratio is out of range"),

@@ -116,6 +116,14 @@ def test_shear_heating_by_hand():
     assert run.finals["temperature_mean"] - 300 == pytest.approx(2e4 * (equivalent - 2e4 / (3 * 1e6 / 2.6)) / 1e5, rel=1e-9)
 
 
+@pytest.mark.parametrize("step", [1e-4, 1e-3, 0.1])
+def test_shear_heating_keeps_its_books(step):
+    """Heat taken up, and dissipation turned to heat: the same to 1e-12, however many steps of a rise of 0.08 K on 300 K."""
+    run = run_point(problem("shear_heating", **{"time.step": step}))
+    assert np.abs(run.series["heat_ledger"]).max() < 1e-12 * run.finals["heat_total"]
+    assert run.finals["heat_total"] == pytest.approx(run.finals["dissipation_total"], rel=1e-12)
+
+
 def test_lumped_time_to_a_temperature():
     run = run_point(problem("lumped_cooling", **{"time.step": 0.1}))
     assert run.finals["time_to_cube_60_degC"] == pytest.approx(math.log(2) * 8500 * 380 / (20 * 1200), rel=1e-6)

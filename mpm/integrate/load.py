@@ -1,0 +1,60 @@
+"""Nominal tractions and drag on a body: forces beside the stress, taken from the config's `loads`.
+
+piece s of the surface of particle p, reference area A_s, at x_s = x_p + F_p d_s:   f_i += ramp(t) A_s T (w_ip + grad w_ip . F_p d_s)
+so force and moment about the particle are right wherever the surface lies in its cell. T is force by reference area and keeps its direction.
+drag  f_p = -rate m_p v_p;   ramp(t) = s^2 (3 - 2 s), s = t/ramp up to 1: without a kick at either end
+A static answer is the end of a ramp of several periods of the slowest mode omega, with a drag rate of about 2 omega.
+A body without loads compiles none of this.
+"""
+
+from mpm.integrate.source import act
+from mpm.jit import kernel
+from mpm.state import Load
+
+
+@kernel(inline=True)
+def share(t, ramp):
+    """Part of the full load at time t."""
+    if t >= ramp:
+        return 1.0
+    s = t / ramp
+    return s * s * (3.0 - 2.0 * s)
+
+
+@act.register(Load)
+def _(source, body, chunk, first, count, dt, next_dt, report):
+    particles = body.particles
+    D = particles.v.shape[1]
+    for p in range(count):
+        i = first + p
+        if dt > 0.0:
+            source.t[i] += dt
+        drag = next_dt * source.rate * particles.m[i]
+        for c in range(D):
+            chunk.f[c, p] -= drag * particles.v[i, c]
+        if not source.loaded[i]:
+            continue
+        if dt > 0.0:
+            carry(source.F, chunk.L, i, p, dt, D)
+        now = next_dt * share(source.t[i], source.ramp)
+        for c in range(D):
+            chunk.f[c, p] += now * source.force[i, c]
+            for d in range(D):
+                moment = 0.0
+                for k in range(D):
+                    moment += source.dipole[i, c, k] * source.F[i, d, k]
+                chunk.S[c, d, p] += now * source.scale * moment
+
+
+@kernel
+def carry(F, L, i, p, dt, D):
+    """F <- (1 + dt L) F of particle i, which is p of the chunk."""
+    for d in range(D):
+        f0, f1, f2 = F[i, 0, d], F[i, min(1, D - 1), d], F[i, D - 1, d]
+        for c in range(D):
+            change = L[c, 0, p] * f0
+            if D > 1:
+                change += L[c, 1, p] * f1
+            if D > 2:
+                change += L[c, 2, p] * f2
+            F[i, c, d] += dt * change

@@ -1,0 +1,35 @@
+"""Loads of a config to the run-time Load of a body: forces and their moments about the particles, from the cut surface."""
+
+import numpy as np
+
+from mpm.basis import inverse_moment
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import on_side
+from mpm.state import Load, NoSource
+from mpm.transfer import uses_basis_gradient
+
+
+def loaded(experiment, name: str, cut, space, gradient):
+    """The Load of one body; NoSource where nothing acts on it."""
+    entries = [entry for entry in experiment.loads if entry.of == name]
+    tractions = [entry for entry in entries if entry.traction is not None]
+    rate = sum(entry.drag.rate for entry in entries if entry.drag is not None)
+    if not tractions and rate == 0:
+        return NoSource()
+    ramps = {entry.traction.ramp for entry in tractions}
+    if len(ramps) > 1:
+        raise SceneError(f"the tractions on {name} have ramps of {', '.join(f'{ramp:g} s' for ramp in sorted(ramps))}: give them the same")
+    N, D = cut.centroid.shape
+    force, dipole = np.zeros((N, D)), np.zeros((N, D, D))
+    for entry in tractions:
+        pieces = np.flatnonzero(on_side(cut.normal, entry.side))
+        if len(pieces) == 0:
+            raise SceneError(f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
+        each = cut.area[pieces, None] * np.array(entry.traction.nominal)
+        lever = cut.point[pieces] - cut.centroid[cut.owner[pieces]]
+        np.add.at(force, cut.owner[pieces], each)
+        np.add.at(dipole, cut.owner[pieces], each[:, :, None] * lever[:, None, :])
+    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
+    held = np.tile(np.eye(D), (N, 1, 1))
+    carries = np.any(force != 0, axis=1) | np.any(dipole != 0, axis=(1, 2))
+    return Load(force, dipole, held, carries, np.zeros(N), max(ramps, default=0.0), float(rate), float(scale))
