@@ -28,6 +28,15 @@ def workers(text: str) -> int:
     return int(text)
 
 
+def share(text: str) -> float:
+    """`1%` or `0.01` as a number between 0 and 1."""
+    match = re.fullmatch(r"\s*(\d+\.?\d*(?:e-?\d+)?|\.\d+)\s*(%?)\s*", text)
+    value = float(match[1]) / (100 if match[2] else 1) if match else 0.0
+    if not 0 < value <= 1:
+        raise typer.BadParameter(f"{text!r} is not a tolerance; say 1% or 0.01")
+    return value
+
+
 Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of the experiment.", show_default=False)]
 Folder = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a sweep.", show_default=False)]
 Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", help="Folder for results.  [default: results/<config name>]", show_default=False)]
@@ -36,6 +45,10 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", he
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, talk on stderr.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Say only what went wrong.")]
 MaxRuns = Annotated[int, typer.Option("--max-runs", metavar="N", min=1, help="Refuse sweeps of more points.")]
+Tolerance = Annotated[
+    float | None,
+    typer.Option("--tol", metavar="TOL", parser=share, show_default=False, help="An error that would do, such as 1%: pilots are run, and a model is chosen."),
+]
 Smoke = Annotated[bool, typer.Option("--smoke", help="Coarse and short: apply the config's smoke section.")]
 
 

@@ -1,6 +1,6 @@
 """mpm plan: what a sweep would do. Runs nothing, writes nothing."""
 
-from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Set, Smoke, load
+from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Set, Smoke, Tolerance, load
 from mpm_cli.sweep import Rerun
 from mpm_cli.talk import document, say
 
@@ -14,12 +14,14 @@ def plan(
     max_runs: MaxRuns = 10_000,
     smoke: Smoke = False,
     as_json: Json = False,
+    tol: Tolerance = None,
 ) -> None:
     """Say what a sweep would do.
 
-    Points and which are there, the physics that is compiled, the time-step limits and which binds, time, memory and bytes. Runs nothing.
+    Points and which are there, the physics that is compiled, time-step limits and which binds, dimensionless groups, smaller models and what they would
+    save, time, memory and bytes. Runs nothing, but with --tol pilots: coarse runs that measure what a smaller model would be off by.
     """
     from mpm.sweep.outlook import outlook, said
 
-    found = outlook(load(config, set_, smoke), out, jobs, rerun, max_runs)
+    found = outlook(load(config, set_, smoke), out, jobs, rerun, max_runs, tol)
     document(found) if as_json else say(said(found))

@@ -27,7 +27,7 @@ PEERS = {
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe"},
-    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs"},
+    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs", "reduce"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat

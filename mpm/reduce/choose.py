@@ -44,9 +44,19 @@ class Taken:
     said: Said
 
 
+def offered(name: str, experiment: Any, left: float) -> Offer | str:
+    """What one reduction of the menu makes of an experiment; a smaller config that is wrong (a probe outside it, say) is no offer."""
+    from mpm.config import ConfigError
+
+    try:
+        return MENU[name](experiment, left)
+    except ConfigError as error:
+        return f"the smaller config is wrong: {str(error).splitlines()[0]}"
+
+
 def judged(experiment: Any, name: str, left: float, run: Callable | None) -> Taken | Said:
     """One reduction of an experiment against what is left of the tolerance; `run` runs pilots, None forbids them."""
-    offer = MENU[name](experiment, left)
+    offer = offered(name, experiment, left)
     if isinstance(offer, str):
         return Said(name, "", None, "", offer)
     error, by = offer.error, "symmetry" if offer.error == 0 else "estimate"
@@ -57,7 +67,7 @@ def judged(experiment: Any, name: str, left: float, run: Callable | None) -> Tak
         return Said(offer.name, offer.dropped, error, by, why)
     if not worthwhile(experiment):
         return Said(offer.name, offer.dropped, error, by, f"{why}, and a pilot would cost as much as the run")
-    piloted, trouble = pilot(experiment, lambda rough: MENU[name](rough, left), run)
+    piloted, trouble = pilot(experiment, lambda rough: offered(name, rough, left), run)
     if piloted <= left:
         return Taken(offer, Said(offer.name, offer.dropped, piloted, "pilot"))
     return Said(offer.name, offer.dropped, piloted, "pilot", trouble or f"{why}; a pilot differs by {piloted:.2g}")

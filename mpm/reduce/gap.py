@@ -80,7 +80,8 @@ def pilot(experiment: Any, reduce: Any, run: Any) -> tuple[float, str]:
         return math.inf, f"no pilot: {str(error).splitlines()[0]}"
     if not (full.outcome.ok and small.outcome.ok):
         return math.inf, f"the pilot ended early: {full.outcome.kind if not full.outcome.ok else small.outcome.kind}"
-    return CAUTION * max(gap(full, small, asked(rough), driving(rough)).values(), default=0.0), ""
+    name, most = widest(gap(full, small, asked(rough), driving(rough)))
+    return CAUTION * most, "" if math.isfinite(most) else f"in a pilot only one of them gives {name}"
 
 
 def rough_form(experiment: Any) -> Any:

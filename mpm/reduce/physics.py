@@ -2,7 +2,8 @@
 
 rigid    heat is asked for and the body hardly moves: geometry off by a strain e changes Fourier and Biot numbers by 2 e and e, and temperatures by at most
          0.4 of that; error 3 e is an upper estimate. Added are the heat of elastic volume change, and what the particles' own grid is off by: 0.3/n^2 with
-         n cells to the middle (physics.md 11, a slab of Bi = 10 at any offset: 4.1e-3 and 1.0e-3 at n = 8 and 16), for other transfers than APIC's no estimate
+         n cells to the middle times Bi/(1 + Bi) (physics.md 11 at any offset: slab of Bi = 10, n = 8 and 16, 4.1e-3 and 1.0e-3; disc of Bi = 10 and 1,
+         n = 12, 9.3e-4 and 5.0e-4); no estimate for transfers that are not affine
 no flow  upper estimates of the stress stay below yield; looked at again in the elastic run
 one way  deformation heats by gamma Theta tr(eps)/(R0 alpha), and stiffens waves by eps_c/2, which adds up over their transits
 no heat  nothing of heat is asked for, and neither expansion nor a law of temperature lets it act on motion
@@ -55,10 +56,16 @@ def moved(experiment, one: Scales) -> float | None:
     heating = experiment.materials[experiment.bodies[one.name].material].heating
     if type(experiment.method.temperature).kind not in AFFINE:
         return None
-    error = STRAIN * sum(strains(experiment, one).values()) + PARTICLES * (experiment.grid.cell / (one.reach or one.length)) ** 2
+    error = STRAIN * sum(strains(experiment, one).values()) + PARTICLES * (experiment.grid.cell / (one.reach or one.length)) ** 2 * steep(one)
     if heating is not None and heating.elastic is not None:
         error += warming(experiment, one)
     return error
+
+
+def steep(one: Scales) -> float:
+    """Bi/(1 + Bi) with the way inside: how steep the temperature is at the surface, of what a held surface makes of it. 1 where a flux is given."""
+    biot = one.beta * one.reach / one.kappa[0] if one.exchanges and one.kappa[0] > 0 else math.inf
+    return biot / (1 + biot) if math.isfinite(biot) else 1.0
 
 
 def near(experiment) -> bool:
@@ -87,7 +94,7 @@ def no_flow(experiment: Any, left: float) -> Offer | str:
             material["heating"] = {"elastic": material["heating"]["elastic"]} if material["heating"]["elastic"] is not None else None
     bodies = [one for one in scales(experiment).values() if one.M is not None]
     calm = all(max(loads(experiment, one)) < 1 for one in bodies)
-    offer = Offer("no flow", f"flow of {', '.join(flowing)}: it does not yield", loaded(data, experiment), 0.0 if calm else None,
+    offer = Offer("no flow", f"flow of {', '.join(flowing)}", loaded(data, experiment), 0.0 if calm else None,
                   doubt=lambda run: yields(run, bodies))  # fmt: skip
     return offer
 

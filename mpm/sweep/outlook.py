@@ -1,4 +1,4 @@
-"""Outlook: what a sweep would do (`mpm plan`): points, what is there already, physics, limits, cost. Runs nothing and writes nothing."""
+"""Outlook: what a sweep would do (`mpm plan`): points, what is there already, physics, limits, cost, smaller models. Writes nothing; runs pilots if asked."""
 
 import importlib
 from pathlib import Path
@@ -10,8 +10,10 @@ from mpm.sweep.engine import Points, missing
 from mpm.sweep.store import Store
 
 
-def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000) -> dict[str, Any]:
-    """Points and dimensions of the sweep, which are there, and `estimate` of the first that would run."""
+def outlook(
+    experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000, tolerance: float | None = None
+) -> dict[str, Any]:
+    """Points and dimensions of the sweep, which are there; of the first that would run `estimate`, groups and smaller models, with pilots at a tolerance."""
     from mpm.scene.groups import groups
     from mpm.sweep.cases import plan as plan_of
 
@@ -34,11 +36,19 @@ def outlook(experiment: Any, out: Path | None, jobs: int, rerun: str | None = No
         "dimensions": [dimension(dim) for dim in plan.dims],
         "estimate": cost,
         "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
+        "smaller": smaller(first.experiment, tolerance) if first else None,
         "jobs": jobs,
         "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
         "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
         "memory_bytes": cost["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in cost else None,
     }
+
+
+def smaller(experiment: Any, tolerance: float | None) -> dict[str, Any]:
+    """Smaller models of one point; with a tolerance pilots are run."""
+    from mpm.reduce.listing import listing
+
+    return listing(experiment, tolerance, importlib.import_module(engine.RUNNER).run_named if tolerance is not None else None)
 
 
 def dimension(dim: Any) -> dict[str, Any]:
@@ -73,6 +83,10 @@ def said(found: dict[str, Any]) -> str:
         if name not in ("physics", "limits", "binds", "seconds", "memory_bytes", "output_bytes"):
             told.append(f"{name:<9} {said_value(value)}")
     told += said_groups(found["groups"])
+    if found["smaller"]:
+        from mpm.reduce.listing import said as said_smaller
+
+        told += said_smaller(found["smaller"])
     if "seconds" in cost:
         told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
         told.append(f"memory    {size(cost['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
