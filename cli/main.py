@@ -15,12 +15,13 @@ from mpm_cli.plan import plan
 from mpm_cli.plot import plot
 from mpm_cli.run import run
 from mpm_cli.schema import schema
+from mpm_cli.stability import stability
 from mpm_cli.status import status
 from mpm_cli.sweep import sweep
 from mpm_cli.talk import internal, warn
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, status, collect, compare, plot, schema, info, warmup)
+COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, plot, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

@@ -114,14 +114,6 @@ def kinetic(space, particles) -> float:
     return float(0.5 * np.sum(particles.m * (still + swirl)))
 
 
-def finite(body) -> str:
-    """The name of a field that is not finite, or nothing."""
-    fields = {"position": body.particles.x, "velocity": body.particles.v, "strain": body.particles.B, "J": body.particles.J}
-    if isinstance(body.thermal, Thermal):
-        fields["temperature"] = body.thermal.theta
-    return next((name for name, values in fields.items() if not np.isfinite(np.sum(values))), "")
-
-
 @kernel
 def nodal(space, x, weights, nodes):
     """nodes_i += sum_p weights_p w_ip: for fields on the grid."""

@@ -84,6 +84,14 @@ class Recorder:
         if np.any(np.isclose(scene.watch.snapshots, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])):
             self.frames.append((clock.time, grid_fields(scene), particle_fields(scene)))
 
+    def drop(self) -> None:
+        """Take back the last record: what it shows is no good."""
+        when = self.times.pop()
+        for values in self.series.values():
+            values.pop()
+        if self.frames and self.frames[-1][0] == when:
+            self.frames.pop()
+
     def mechanical(self, scene, clock):
         """Sums and extrema of motion."""
         axes = axis_names(scene.space)

@@ -5,7 +5,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 
 from dataclasses import dataclass
 
-COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER = range(11)
+COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
 
 KINDS = {
     COMPLETED: ("completed", "", ""),
@@ -18,6 +18,7 @@ KINDS = {
     ENERGY_GROWTH: ("energy_growth", "energy grows without a source", "lower `time.safety`"),
     MAX_PRINCIPLE: ("max_principle", "a temperature left the bounds of its data", "lower `time.safety` or `method.heat_step`"),
     HEAT_SOLVER: ("heat_solver", "an implicit heat step did not converge", "lower `method.heat_step`, or raise `method.heat.implicit.tolerance`"),
+    FRACTURED: ("fractured", "particles are more than two cells apart", "more `method.particles` or larger cells; `method.fracture: warn` lets it run on"),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

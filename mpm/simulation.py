@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import directions, extents
-from mpm.diagnostics import finite
+from mpm.guards import Guards, explain
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
@@ -23,7 +23,7 @@ from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPO
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.timestep import Limits, limits
 from mpm.observe import Recorder
-from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, Outcome, outcome
+from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.transfer import wants_change
 
@@ -65,6 +65,7 @@ class Scene:
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
+    tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
 
 
 class Clock:
@@ -77,6 +78,9 @@ class Clock:
         self.exchanged = self.local = self.dissipated = 0.0
         self.repaired = self.unrepaired = 0.0
         self.first_step: float | None = None
+        self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
+        self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
+        self.swell = 1.0
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
@@ -98,16 +102,23 @@ class Clock:
 def simulate(scene: Scene, beat=None) -> Run:
     """Run the scene to its end or its failure. `beat(fraction, time) -> bool` is asked between blocks; true stops the run."""
     began = time.perf_counter()
-    clock, recorder = Clock(scene), Recorder(scene)
+    clock, recorder, guards = Clock(scene), Recorder(scene), Guards(scene)
     buffers = work_arrays(scene)
-    result = outcome(COMPLETED)
     recorder.record(scene, clock)
+    result = guards.frame(scene, clock, recorder.series)
     for end in scene.times[1:]:
-        result = interval(scene, clock, recorder, buffers, float(end), beat)
+        result = interval(scene, clock, recorder, guards, buffers, float(end), beat)
         if not result.ok:
             break
         recorder.record(scene, clock)
-    return recorder.run(scene, clock, result, time.perf_counter() - began)
+        result = guards.frame(scene, clock, recorder.series)
+        if not result.ok:
+            recorder.drop()
+            break
+    run = recorder.run(scene, clock, explain(result, scene, clock), time.perf_counter() - began)
+    if guards.warned:
+        run.facts["warnings"] = guards.warned
+    return run
 
 
 def work_arrays(scene: Scene):
@@ -121,7 +132,7 @@ def work_arrays(scene: Scene):
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
 
 
-def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) -> Outcome:
+def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, beat) -> Outcome:
     """Advance to the output time `end`."""
     start, now = clock.time, limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     pace = scene.heat_step or now.pace
@@ -132,11 +143,11 @@ def interval(scene: Scene, clock: Clock, recorder, buffers, end: float, beat) ->
         if not result.ok:
             return result
         recorder.watch(scene, until)
-        result = march(scene, clock, buffers, until, beat)
+        result = march(scene, clock, guards, buffers, until, beat)
         if not result.ok:
             return result
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    return outcome(COMPLETED)
+    return guards.block(scene, clock)
 
 
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
@@ -150,6 +161,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
     implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
+    clock.heated = None if implicit else (dt / substeps, now.substep(), min(now.heat, key=now.heat.get))
     for body in scene.bodies:
         lost = lost_to_grid(scene, body, buffers[3])
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
@@ -183,12 +195,15 @@ def lost_to_grid(scene: Scene, body, rows):
     return specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)
 
 
-def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
+def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, beat) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     nodes, force, boxes, _ = buffers
     particles = sum(len(body.particles.m) for body in scene.bodies)
     most = max(1, min(BLOCK, BLOCK_WORK // particles))
     while until - clock.time > 1e-12 * until:
+        sound = guards.block(scene, clock)
+        if not sound.ok:
+            return sound
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
         step = scene.step or now.step() * scene.safety
         clock.first_step = clock.first_step or step
@@ -201,6 +216,8 @@ def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
         if count == 1 and left < step * (1 - 1e-9):
             binding = "heat pace or output"
         clock.bound[binding] = clock.bound.get(binding, 0) + block
+        clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
+        clock.swell = max(float(report[SWELL]) for report in clock.reports)
         clock.reset()
         advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, block, clock.reports)
         clock.gather(dt)
@@ -213,10 +230,6 @@ def march(scene: Scene, clock: Clock, buffers, until: float, beat) -> Outcome:
             return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
         clock.time = until if block == count else clock.time + dt * block
-        for name, body in zip(scene.names, scene.bodies, strict=True):
-            bad = finite(body)
-            if bad:
-                return outcome(NON_FINITE, time=clock.time * scene.scale, step=clock.steps, detail=f"({bad} of {name})")
         if beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale):
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     return outcome(COMPLETED)

@@ -17,7 +17,7 @@ LAYERS = {
     "jit": 0, "tensors": 0, "outcome": 0, "state": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "integrate": 2,
-    "error": 2, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
+    "error": 2, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
     "runner": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6,
@@ -26,7 +26,7 @@ PEERS = {
     "state": {"outcome"}, "tensors": {"jit"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
-    "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe"},
+    "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs", "reduce"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables"}  # anyone may import it

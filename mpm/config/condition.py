@@ -34,7 +34,11 @@ class Condition:
             self.run = self.build(tree.body)
         except RecursionError:
             raise ConditionError("the condition is nested too deeply") from None
-        if not isinstance(tree.body, ast.Compare | ast.BoolOp | ast.UnaryOp) or (isinstance(tree.body, ast.UnaryOp) and not isinstance(tree.body.op, ast.Not)):
+        self.check(tree.body)
+
+    def check(self, body: ast.AST) -> None:
+        """What the whole must be."""
+        if not isinstance(body, ast.Compare | ast.BoolOp | ast.UnaryOp) or (isinstance(body, ast.UnaryOp) and not isinstance(body.op, ast.Not)):
             raise ConditionError("a condition compares something, as in kappa > 0.3")
 
     def __call__(self, values: Mapping[str, Any]) -> bool:

@@ -20,10 +20,11 @@ from mpm.config.model import Which
 from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
 from mpm.config.quantities import Acceleration
+from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
 
 PHYSICS_VERSION = 1
-NOT_KEYED = ("title", "sweep", "smoke", "chart")  # cannot change the result of a point
+NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability")  # cannot change the result of a point
 
 
 class Experiment(Model):
@@ -45,6 +46,7 @@ class Experiment(Model):
     exact: Exact | None = doc(None, description="exact solution that the run is compared with")
     sweep: Sweep | None = doc(None, description="what varies")
     chart: Chart | None = doc(None, description="speed against accuracy: methods and resolutions of `mpm chart`")
+    stability: Stability | None = doc(None, description="a map of failures, for mpm stability")
     smoke: dict[str, Any] | None = doc(None, description="path: value, applied by --smoke to make the run coarse and short")
 
     _source: str = PrivateAttr("")
@@ -134,7 +136,7 @@ class Experiment(Model):
         for section, name in (("output", "every"), ("method", "offset")):
             if name in self._derived:
                 data[section].pop(name)
-        return {**data, "sweep": None, "smoke": None, "chart": None}
+        return {**data, "sweep": None, "smoke": None, "chart": None, "stability": None}
 
 
 def plain(value: Any, defaults: bool = True) -> Any:

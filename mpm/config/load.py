@@ -15,6 +15,7 @@ from mpm.config.merge import extend, put
 from mpm.config.names import GREEK, ROOT, Names, UnknownName
 from mpm.config.nodes import BAD, Node, Origin, read, read_file, wrap
 from mpm.config.problems import ConfigError, Problem, brief, listed
+from mpm.config.rules_stability import findings as map_findings
 from mpm.config.slots import Path
 from mpm.config.vary import Vary
 
@@ -210,6 +211,7 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
         except Unknown:
             pass  # part of the sweep is wrong and told above
         found += vary.found
+    found += map_findings(whole)
     return experiment, problems(root, found)
 
 

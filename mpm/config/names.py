@@ -10,7 +10,7 @@ from mpm.config.problems import near
 from mpm.config.slots import Path, Slot, leaves, places
 
 GREEK = {"κ": "kappa", "β": "beta", "α": "alpha", "η": "eta"}
-NOT_VARIED = ("title", "sweep", "smoke", "chart")
+NOT_VARIED = ("title", "sweep", "smoke", "chart", "stability")
 ROOT = Slot(Experiment)
 
 

@@ -234,6 +234,7 @@ def build(experiment, exact=None) -> Scene:
         affine=affine,
         sharp=sharp,
         repair=experiment.method.bounds is not None,
+        tears=experiment.method.fracture == "fail",
         times=times,
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,

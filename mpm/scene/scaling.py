@@ -132,5 +132,5 @@ def physical(run: Run, experiment) -> Run:
     if past and run.outcome.ok:
         said = f"time scaling by {S:g} lets inertia in: {', '.join(past)}"
         run.outcome = replace(run.outcome, message=said, advice="lower `time.scale`")
-        run.facts["warnings"] = [f"{said}: lower `time.scale`"]
+        run.facts["warnings"] = [*run.facts.get("warnings", ()), f"{said}: lower `time.scale`"]
     return run

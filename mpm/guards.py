@@ -1,0 +1,205 @@
+"""Guards of a run of moving bodies (failure-modes.md 1), beside those that sit in the step itself (integrate/respond.py, integrate/explicit.py).
+
+block     every block of steps: every field finite, every particle on the grid; temperatures above absolute zero and, where nothing heats, within
+          OVERSHOOT of their data (a warning from NOTICEABLE on: FLIP's noise beside a cold surface reaches 0.29, APIC's slopes 0.05)
+frame     every output time: no energy from nowhere (GROWTH); particles less than a cell apart
+explain   after a failure: which field of which particle was first, and what to do: the step against the limits that held
+Cost      measured by tests/test_guards.py: below 1 % of a run.   Fails when: a scene heats itself (then only absolute zero bounds temperatures), or it
+has thermal stress or sources (then energy may grow, and is not judged).
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from mpm.basis import room
+from mpm.boundary import extents
+from mpm.diagnostics import grid_shape
+from mpm.integrate.surroundings import Surroundings
+from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, INVERTED, LEFT_GRID, MAX_PRINCIPLE, NON_FINITE, OVERSTRETCHED, Outcome, outcome
+from mpm.state import PAD, Heating, Isothermal, NoExchange, NoExpansion, NoSource, Radiation, Thermal
+
+OVERSHOOT, NOTICEABLE = 0.5, 0.06  # of the range of the data
+GROWTH = 0.5  # of the largest energy so far: at the automatic step symplectic Euler alone swings by up to 0.17 of it
+LEAST_J, MOST_J = 1e-3, 1e3
+
+
+class Guards:
+    """What one run may not do."""
+
+    def __init__(self, scene):
+        self.data = [Data(body, around) for body, around in zip(scene.bodies, scene.surroundings or (None,) * len(scene.bodies), strict=True)]
+        self.judged = all(isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) for body in scene.bodies)
+        self.begun = math.nan
+        self.most = 0.0
+        self.holes: list[int] | None = None
+        self.warned: list[str] = []
+
+    def block(self, scene, clock) -> Outcome:
+        """Before a block of steps, and before a record."""
+        for name, body, data in zip(scene.names, scene.bodies, self.data, strict=True):
+            wrong = unsound(scene.space, body) or (data.judge(body) if isinstance(body.thermal, Thermal) else None)
+            if wrong is not None:
+                code, particle, said = wrong
+                return outcome(code, particle, clock.time * scene.scale, clock.steps, f"({said}, {name})")
+        return outcome(COMPLETED)
+
+    def frame(self, scene, clock, series) -> Outcome:
+        """At an output time, with the series up to it."""
+        for name, data in zip(scene.names, self.data, strict=True):
+            if data.over > NOTICEABLE:
+                self.warn(name, "temperatures leave", f"the bounds of their data by up to {100 * data.over:.0f} % of the range: `method.temperature: apic`, "
+                          "or shorter heat steps")  # fmt: skip
+        now = {name: series[name][-1] for name in ("energy_kinetic", "energy_elastic", "energy_total")}
+        self.most = max(self.most, now["energy_kinetic"] + now["energy_elastic"])
+        if math.isnan(self.begun):
+            self.begun = now["energy_total"]
+        gained = now["energy_total"] - self.begun
+        if self.judged and gained > GROWTH * self.most and gained > 1e-12 * abs(self.begun):
+            said = f"({gained:.3g} J more than at the start, {100 * gained / self.most:.0f} % of the largest)"
+            return outcome(ENERGY_GROWTH, time=clock.time * scene.scale, step=clock.steps, detail=said)
+        return self.gaps(scene, clock)
+
+    def gaps(self, scene, clock) -> Outcome:
+        """Empty cells between particles of one body: spacing over h. Two in a row: over 2 h, where no force is left."""
+        found = [holes(scene.space, body.particles.x) for body in scene.bodies]
+        if self.holes is None:
+            self.holes = [one for one, _ in found]
+            self.wide = [two for _, two in found]
+        for name, (one, two), was, wide in zip(scene.names, found, self.holes, self.wide, strict=True):
+            if scene.tears and two > wide:
+                return outcome(FRACTURED, time=clock.time * scene.scale, step=clock.steps, detail=f"of {name}: two empty cells in a row")
+            if one > was:
+                self.warn(name, "particles are more than a cell apart", f"from t = {clock.time * scene.scale:.4g} s on, and beyond two they pull no more: "
+                          "more `method.particles`, or larger cells")  # fmt: skip
+        return outcome(COMPLETED)
+
+    def warn(self, name: str, what: str, more: str) -> None:
+        """Say a thing once a body; of a thing that grows, the latest."""
+        begins = f"{name}: {what}"
+        if "apart" in what and any(text.startswith(begins) for text in self.warned):
+            return
+        self.warned = [text for text in self.warned if not text.startswith(begins)] + [f"{begins} {more}"]
+
+
+class Data:
+    """Bounds of one body's temperatures: what it was, and what it meets; open where something heats it."""
+
+    def __init__(self, body, around):
+        self.low, self.high, self.over = -math.inf, math.inf, 0.0
+        if isinstance(body.thermal, Isothermal):
+            return
+        theta = body.thermal.theta
+        self.heats = not isinstance(body.source, NoSource) or (isinstance(body.heating, Heating) and (body.heating.gamma != 0 or body.heating.fraction != 0))
+        self.flux = any(act.flux != 0 for act in around.acts) if isinstance(around, Surroundings) else False
+        self.low, self.high = float(np.min(theta)), float(np.max(theta))
+
+    def meet(self, body) -> None:
+        """Widen by what surrounds the body now."""
+        surface = body.surface
+        if isinstance(surface, NoExchange):
+            return
+        acting = surface.beta > 0
+        for seen in (surface.outside[acting], (surface.outside + surface.drift)[acting]):
+            if len(seen):
+                self.low, self.high = min(self.low, float(np.min(seen))), max(self.high, float(np.max(seen)))
+        if isinstance(surface.radiation, Radiation) and np.any(surface.radiation.emissivity > 0):
+            sky = surface.radiation.sky[surface.radiation.emissivity > 0] - body.thermal.zero
+            drift = surface.radiation.drift[surface.radiation.emissivity > 0]
+            self.low, self.high = min(self.low, float(np.min(sky)), float(np.min(sky + drift))), max(self.high, float(np.max(sky)), float(np.max(sky + drift)))
+
+    def judge(self, body) -> tuple[int, int, str] | None:
+        """(code, particle, what is wrong with its temperature), or nothing."""
+        thermal = body.thermal
+        least, most = float(np.min(thermal.theta)), float(np.max(thermal.theta))
+        if not least > -thermal.zero:
+            return MAX_PRINCIPLE, int(np.argmin(thermal.theta)), f"{thermal.zero + least:.4g} K, below absolute zero"
+        if self.heats or self.flux:
+            return None
+        self.meet(body)
+        scale = 1e-6 * max(abs(thermal.zero), 1.0)
+        self.over = max(self.over, (max(most - self.high, self.low - least) - scale) / max(self.high - self.low, scale))
+        over = OVERSHOOT * (self.high - self.low) + scale
+        bounds = f"beyond {thermal.zero + self.low:.5g} to {thermal.zero + self.high:.5g} K"
+        if most > self.high + over:
+            return MAX_PRINCIPLE, int(np.argmax(thermal.theta)), f"{thermal.zero + most:.5g} K, {bounds}"
+        if least < self.low - over:
+            return MAX_PRINCIPLE, int(np.argmin(thermal.theta)), f"{thermal.zero + least:.5g} K, {bounds}"
+        return None
+
+
+def unsound(space, body) -> tuple[int, int, str] | None:
+    """(code, particle, what is wrong) where a value is not finite, a particle is off the grid or its volume is beyond what a step allows.
+
+    Fields that spoil the others come first. Extrema and sums carry a NaN, so that looking for one costs a pass over the array.
+    """
+    p, thermal = body.particles, body.thermal
+    if isinstance(thermal, Thermal):
+        for what, values in (("temperature", thermal.theta), ("gradient of temperature", thermal.c)):
+            if not np.isfinite(np.sum(values)):
+                return NON_FINITE, first_bad(values), what
+    least, most = float(np.min(p.J)), float(np.max(p.J))
+    if not (least > LEAST_J and most < MOST_J):
+        if not np.isfinite(least + most):
+            return NON_FINITE, first_bad(p.J), "J"
+        code, i = (OVERSTRETCHED, int(np.argmax(p.J))) if most >= MOST_J else (INVERTED if least <= 0 else OVERSTRETCHED, int(np.argmin(p.J)))
+        return code, i, f"J = {p.J[i]:.3g}"
+    for what, values in (("strain", p.B), ("affine velocity", p.C), ("velocity", p.v), ("position", p.x)):
+        if not np.isfinite(np.sum(values)):
+            return NON_FINITE, first_bad(values), what
+    inside, shape = room(space.basis), extents(space)
+    low, high = (inside - PAD) * space.h, [(n - 1 - PAD - inside) * space.h for n in shape[: p.x.shape[1]]]
+    for axis, (first, last) in enumerate(zip(np.min(p.x, axis=0), np.max(p.x, axis=0), strict=True)):
+        if not first > low or not last < high[axis]:
+            i = int(np.argmin(p.x[:, axis]) if not first > low else np.argmax(p.x[:, axis]))
+            return LEFT_GRID, i, f"{'xyz'[axis]} = {p.x[i, axis]:.4g} m"
+    return None
+
+
+def first_bad(values: np.ndarray) -> int:
+    """The first particle with a value that is not finite; -1 where only their sum is not."""
+    bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+    return int(np.argmax(bad)) if bad.any() else -1
+
+
+def holes(space, x: np.ndarray) -> tuple[int, int]:
+    """(single empty cells, pairs of them) with particles on both sides along a direction."""
+    shape = tuple(n + 1 for n in grid_shape(space))
+    cells = np.floor(x / space.h).astype(np.int64) + PAD
+    filled = np.zeros(shape, bool)
+    filled[tuple(cells.T)] = True
+    one = two = 0
+    for axis in range(len(shape)):
+        row = np.moveaxis(filled, axis, 0)
+        empty = ~row
+        one += int(np.count_nonzero(row[:-2] & empty[1:-1] & row[2:]))
+        two += int(np.count_nonzero(row[:-3] & empty[1:-2] & empty[2:-1] & row[3:]))
+    return one + two, two
+
+
+def explain(found: Outcome, scene, clock) -> Outcome:
+    """The outcome with advice from the step that was taken: which limit it passed, by how much, and what to change."""
+    if found.ok or found.kind in ("budget", "heat_solver"):
+        return found
+    taken = {"heat": clock.heated, "mechanical": clock.stepped}
+    wanted = ("heat",) if found.kind == "max_principle" else ("mechanical", "heat") if found.kind == "non_finite" else ("mechanical",)
+    known = [(dt / limit, dt, limit, name, kind) for kind in wanted if (now := taken[kind]) is not None for dt, limit, name in [now] if limit > 0]
+    if not known:
+        return found
+    ratio, dt, limit, name, kind = max(known)
+    if ratio <= 1.0 + 1e-9:
+        return replace(found, advice=f"the step was {ratio:.2g} of the {name} limit, so it is not the step alone; {found.advice}")
+    swollen = f" at J = {clock.swell:.2g}" if abs(clock.swell - 1.0) > 0.05 else ""
+    step = "heat step" if kind == "heat" else "step"
+    said = f"the {step} of {dt:.3g} s is {ratio:.2g} times the {name} limit{swollen}: {cure(scene, kind, limit)}"
+    return replace(found, advice=f"{found.advice}; but {said}" if found.kind == "left_grid" else said)
+
+
+def cure(scene, kind: str, limit: float) -> str:
+    """What to change where a step is over a limit."""
+    if kind == "mechanical" and scene.step is not None:
+        return f"lower `time.step` below {limit:.3g} s, or let it be `auto`"
+    if scene.safety > 1:
+        return "lower `time.safety` to 1" + (", or leave `method.heat` at auto" if kind == "heat" else "")
+    return f"lower `{'method.heat_step' if kind == 'heat' else 'time.safety'}`"

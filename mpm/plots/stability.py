@@ -1,0 +1,122 @@
+"""The figure of `mpm stability`: a panel a method; points by outcome, the measured boundary, theory's lines.
+
+Blue dots completed, orange marks did not, a mark a reason. Black: the boundary, refined between the last point
+within and the first beyond. Dashed: theory.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, figure, plain_ticks, styled
+
+WITHIN, BEYOND = OKABE_ITO[0], OKABE_ITO[1]
+COLUMNS = 4
+LINES = (OKABE_ITO[3], OKABE_ITO[4], OKABE_ITO[5], "#7a5195")
+SAFE = OKABE_ITO[2]
+
+
+def draw(tree: Any) -> Any:
+    """The figure of stability.nc."""
+    with styled():
+        return Figure(tree).draw()
+
+
+class Figure:
+    """One map."""
+
+    def __init__(self, tree: Any):
+        self.root, self.points = tree["/"].dataset, tree["points"].dataset
+        self.panels = [str(name) for name in self.root.panel.values]
+        self.x = self.root.across.values
+        self.labels = [str(text) for text in self.root.across_label.values] if "across_label" in self.root else None
+        self.up = self.root.attrs["toward"] == "larger"
+        self.log_x = self.labels is None and positive(self.x) and wide(self.x)
+        self.log_y = positive(self.points.along.values) and wide(self.points.along.values)
+        causes: dict[str, int] = {}
+        for cause in self.points.outcome.values[self.points.is_beyond.values == 1]:
+            causes[str(cause)] = causes.get(str(cause), 0) + 1
+        self.causes = sorted(causes, key=causes.get, reverse=True)
+
+    def draw(self) -> Any:
+        """All panels, and a legend that holds for all of them."""
+        columns = min(COLUMNS, len(self.panels))
+        rows = math.ceil(len(self.panels) / columns)
+        fig = figure(str(self.root.attrs["title"]), 0.9 + (3.6 if columns > 2 else 4.4) * rows)
+        axes = fig.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        for index, ax in enumerate(axes.flat):
+            if index < len(self.panels):
+                self.panel(ax, index)
+            else:
+                ax.set_visible(False)
+        for ax in axes[-1]:
+            ax.set_xlabel(self.axis("across"))
+        for ax in axes[:, 0]:
+            ax.set_ylabel(self.axis("boundary"))
+        self.legend(fig, axes)
+        return fig
+
+    def axis(self, name: str) -> str:
+        """What an axis is called: as the config says; nothing is added to a name that it chose."""
+        return str(self.root[name].attrs["long_name"])
+
+    def panel(self, ax: Any, index: int) -> None:
+        """Points, boundary and theory of one panel."""
+        mine = self.points.panel_of.values == index
+        at, along, beyond = (self.points[name].values[mine] for name in ("at", "along", "is_beyond"))
+        outcome = self.points.outcome.values[mine]
+        ok = beyond == 0
+        ax.set_title(self.panels[index])
+        (ax.set_xscale("log"), plain_ticks(ax.xaxis)) if self.log_x else None
+        (ax.set_yscale("log"), plain_ticks(ax.yaxis)) if self.log_y else None
+        ax.scatter(at[ok], along[ok], s=9, color=WITHIN, alpha=0.55, lw=0, zorder=2)
+        for number, cause in enumerate(self.causes):
+            here = ~ok & (outcome == cause)
+            mark = MARKS[number % len(MARKS)]
+            ax.scatter(at[here], along[here], s=16, color=BEYOND, marker=mark, lw=0.9, alpha=0.75, zorder=2)
+        low, high = np.min(self.points.along.values), np.max(self.points.along.values)
+        within, after = self.root.within.values[index], self.root.beyond.values[index]
+        known = np.isfinite(within) & np.isfinite(after)
+        edge = np.where(known, self.root.boundary.values[index], np.where(np.isnan(after), high if self.up else low, low if self.up else high))
+        far = high * 10 if self.up else (low / 10 if self.log_y else low - abs(high))
+        ax.fill_between(self.x, edge, far, color=BEYOND, alpha=0.10, lw=0, zorder=0)
+        ax.plot(self.x, np.where(known, self.root.boundary.values[index], np.nan), "-o", color=INK, ms=3.5, lw=2.2, zorder=4)
+        if "expected" in self.root:
+            for line, look in enumerate(self.looks()):
+                ax.plot(self.x, self.root.expected.values[line, index], lw=1.9, zorder=5, **look)
+        room = (high / low) ** 0.04 if self.log_y else 0.04 * (high - low)
+        ax.set_ylim(*((low / room, high * room) if self.log_y else (low - room, high + room)))
+        if self.labels is not None:
+            ax.set_xticks(self.x, self.labels)
+
+    def legend(self, fig: Any, axes: Any) -> None:
+        """Under the first panel of the last row: marks, then theory."""
+        marks = [Line2D([], [], marker="o", ms=3.5, color=INK, label="measured boundary")]
+        marks += [Line2D([], [], ls="None", marker="o", ms=4, color=WITHIN, label="completed")]
+        marks += [Line2D([], [], ls="None", marker=MARKS[k % len(MARKS)], color=BEYOND, label=cause.replace("_", " ")) for k, cause in enumerate(self.causes)]
+        lines = []
+        if "expected" in self.root:
+            lines = [Line2D([], [], label=str(label), **look) for label, look in zip(self.root.line_label.values, self.looks(), strict=True)]
+        entries = [*marks, *lines]
+        longest = max(len(entry.get_label()) for entry in entries)
+        fig.legend(handles=entries, loc="outside lower left", ncols=min(len(entries), max(2, 150 // (longest + 9))), handlelength=2.6)
+
+    def looks(self) -> list[dict[str, Any]]:
+        """Colour and dashes of every line of theory: what is safe in one look, what is expected in others."""
+        found, count = [], 0
+        for role in self.root.line_role.values:
+            found.append({"color": SAFE, "ls": DASHES[1]} if role == "safe" else {"color": LINES[count % len(LINES)], "ls": DASHES[2 + count % 3]})
+            count += role != "safe"
+        return found
+
+
+def positive(values: np.ndarray) -> bool:
+    return bool(np.min(values) > 0)
+
+
+def wide(values: np.ndarray) -> bool:
+    """Whether a logarithmic axis shows more."""
+    return bool(np.max(values) > 8 * np.min(values))
+
