@@ -17,8 +17,9 @@ from mpm.basis import room
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape
 from mpm.integrate.surroundings import Surroundings
+from mpm.materials import Hencky
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, INVERTED, LEFT_GRID, MAX_PRINCIPLE, NON_FINITE, OVERSTRETCHED, Outcome, outcome
-from mpm.state import PAD, Heating, Isothermal, NoExchange, NoExpansion, NoSource, Radiation, Thermal
+from mpm.state import PAD, Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
 
 OVERSHOOT, NOTICEABLE = 0.5, 0.06  # of the range of the data
 GROWTH = 0.5  # of the largest energy so far: at the automatic step symplectic Euler alone swings by up to 0.17 of it
@@ -30,7 +31,9 @@ class Guards:
 
     def __init__(self, scene):
         self.data = [Data(body, around) for body, around in zip(scene.bodies, scene.surroundings or (None,) * len(scene.bodies), strict=True)]
-        self.judged = all(isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) for body in scene.bodies)
+        self.judged = all(
+            isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies
+        )
         self.begun = math.nan
         self.most = 0.0
         self.holes: list[int] | None = None
@@ -91,7 +94,7 @@ class Data:
         if isinstance(body.thermal, Isothermal):
             return
         theta = body.thermal.theta
-        self.heats = not isinstance(body.source, NoSource) or (isinstance(body.heating, Heating) and (body.heating.gamma != 0 or body.heating.fraction != 0))
+        self.heats = not (isinstance(body.source, NoSource | Load) and isinstance(body.heating, NoHeating))
         self.flux = any(act.flux != 0 for act in around.acts) if isinstance(around, Surroundings) else False
         self.low, self.high = float(np.min(theta)), float(np.max(theta))
 

@@ -161,7 +161,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
     implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
-    clock.heated = None if implicit else (dt / substeps, now.substep(), min(now.heat, key=now.heat.get))
+    clock.heated = None if implicit else (dt / substeps, now.substep(), "heat" if len(now.heat) > 1 else next(iter(now.heat)))
     for body in scene.bodies:
         lost = lost_to_grid(scene, body, buffers[3])
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
