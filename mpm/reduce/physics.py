@@ -34,18 +34,20 @@ def rigid(experiment: Any, left: float) -> Offer | str:
         return "a body has no heat"
     if any(wall.heat is not None for wall in experiment.walls.values()):
         return "a hot wall exchanges heat by contact"
-    if len(experiment.bodies) > 1 and (near(experiment) or experiment.gravity is not None or any(one.speed for one in scales(experiment).values())):
+    found = scales(experiment).values()
+    pushed = experiment.gravity is not None or experiment.loads or any(one.speed for one in found)
+    if len(found) > 1 and (near(experiment) or pushed):
         return "bodies may touch"
     data = bare(experiment)
     for material in data["materials"].values():
         material |= dict.fromkeys(("elastic", "flow", "expansion", "heating"))
     for body in data["bodies"].values():
         body |= {"velocity": None, "angular_velocity": None}
-    data |= {"walls": {}, "gravity": None, "time": {"end": experiment.time.end}}
+    data |= {"walls": {}, "gravity": None, "loads": [], "time": {"end": experiment.time.end}}
     data["grid"]["basis"] = "quadratic"
     data["method"] = {name: value for name, value in data["method"].items() if name in HEAT_METHOD}
-    found = [moved(experiment, one) for one in scales(experiment).values()]
-    error = None if None in found else max(found)
+    errors = [moved(experiment, one) for one in found]
+    error = None if None in errors else max(errors)
     return Offer("rigid", "motion: heat alone, in bodies that stay where they are", loaded(data, experiment), error)
 
 
@@ -154,5 +156,10 @@ def no_heat(experiment: Any, left: float) -> Offer | str:
     for wall in data["walls"].values():
         for kind in wall.values():
             kind["heat"] = None
-    deaf = all(one.gamma == 0 and all(pair is None or pair[0] == pair[1] for pair in (one.M, one.p0, one.eta)) for one in scales(experiment).values())
-    return Offer("no heat", "heat: motion at the temperatures of the start", loaded(data, experiment), 0.0 if deaf else None)
+    error = 0.0 if all(map(deaf, scales(experiment).values())) else None
+    return Offer("no heat", "heat: motion at the temperatures of the start", loaded(data, experiment), error)
+
+
+def deaf(one: Scales) -> bool:
+    """Whether temperature does not act on the motion of a body: no expansion, no law that changes with it."""
+    return one.gamma == 0 and one.stiffening == 1 and all(pair is None or pair[0] == pair[1] for pair in (one.M, one.p0, one.eta))

@@ -90,9 +90,10 @@ def heat(experiment, one: Scales) -> list[Group]:
 
 
 def strains(experiment, one: Scales) -> dict[str, float]:
-    """Upper estimates of strain by cause: gravity put on at once, a stop from the starting speed, thermal expansion."""
+    """Upper estimates of strain by cause: gravity and tractions put on at once, a stop from the starting speed, thermal expansion."""
     g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
-    return {"gravity": 2 * one.density * g * one.height / one.softest, "impact": one.speed / math.sqrt(one.softest / one.density), "swelling": one.swelling}
+    return {"gravity": 2 * one.density * g * one.height / one.softest, "impact": one.speed / math.sqrt(one.softest / one.density), "swelling": one.swelling,
+            "traction": 2 * one.traction / one.softest}
 
 
 def motion(experiment, one: Scales) -> list[Group]:
@@ -127,9 +128,9 @@ def motion(experiment, one: Scales) -> list[Group]:
 
 
 def loads(experiment, one: Scales) -> tuple[float, float]:
-    """Upper estimates of the stress over the yield stress: of shear over M, of pressure over p0 M. Weight put on at once, impact, thermal stress."""
+    """Upper estimates of the stress over the yield stress: of shear over M, of pressure over p0 M. Weight and tractions act at once."""
     g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
-    stress = 2 * one.density * g * one.height + one.density * one.wave * one.speed + one.thermal_stress
+    stress = 2 * one.density * g * one.height + 2 * one.traction + one.density * one.wave * one.speed + one.thermal_stress
     return 2 * stress / one.M[0], 2 * stress / (one.M[0] * one.p0[0])
 
 

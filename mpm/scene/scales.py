@@ -11,7 +11,8 @@ import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import bounds
-from mpm.materials import value
+from mpm.materials import HenckyWarm, value
+from mpm.materials.porous import aspect
 from mpm.scene.build import elastic_law, law, stress_temperature_modulus
 from mpm.scene.exchange import programme, robin
 from mpm.scene.shapes import cut_quadrature, shape
@@ -49,8 +50,10 @@ class Scales:
     exchanges: tuple[Exchanging, ...] = ()
     kappa: tuple[float, float] | None = None
     alpha: tuple[float, float] | None = None
-    lam: float | None = None
+    lam: float | None = None  # where E follows temperature: at its softest
     mu: float | None = None
+    stiffening: float = 1.0  # largest over smallest E
+    traction: float = 0.0  # largest force by area [Pa]
     gamma: float = 0.0
     reference: float = math.nan
     set: float = math.inf  # temperature above which it swells no further [K]
@@ -85,8 +88,8 @@ class Scales:
 
     @property
     def wave(self) -> float:
-        """Elastic wave speed [m/s]."""
-        return math.sqrt(self.stiffness / self.density)
+        """Largest elastic wave speed [m/s]."""
+        return math.sqrt(self.stiffening * self.stiffness / self.density)
 
     @property
     def softest(self) -> float:
@@ -108,7 +111,7 @@ class Scales:
     @property
     def thermal_stress(self) -> float:
         """Largest gamma (T - T0) [Pa]."""
-        return 3 * self.bulk * self.swelling if self.gamma else 0.0
+        return 3 * self.bulk * self.swelling * self.stiffening if self.gamma else 0.0
 
 
 def scales(experiment) -> dict[str, Scales]:
@@ -171,7 +174,9 @@ def of_body(experiment, name: str) -> Scales:
     speed = math.hypot(*body.velocity) if body.velocity is not None else 0.0
     spin = body.angular_velocity
     speed += (math.hypot(*spin) if isinstance(spin, tuple) else abs(spin or 0.0)) * math.hypot(*extent) / 2
-    return Scales(name, volume, surface, extent, reach, height, speed, low, high, material.density, exchanges, **laws(material, max(low, 1.0), high))
+    pull = sum(math.hypot(*entry.traction.nominal) for entry in experiment.loads if entry.of == name and entry.traction is not None)
+    found = laws(material, max(low, 1.0), high) | {"traction": pull}
+    return Scales(name, volume, surface, extent, reach, height, speed, low, high, material.density, exchanges, **found)
 
 
 def shaped(experiment, name: str, high: float):
@@ -218,6 +223,8 @@ def along(experiment, extent: tuple[float, ...]) -> float:
 def ends(model, low: float, high: float) -> tuple[float, float]:
     """Smallest and largest value of a law between two temperatures."""
     run = law(model)
+    if type(model).kind == "porosity":  # it follows the volume: from a tenth more open than at the start to pores closed
+        return aspect(run.solid / 1.1, run.exponent), aspect(1.0, run.exponent)
     found = [float(value(run, t)) for t in ({low, high} if type(model).kind == "constant" else np.linspace(low, high, SAMPLES))]
     return min(found), max(found)
 
@@ -229,6 +236,10 @@ def laws(material, low: float, high: float) -> dict:
         found |= {"kappa": ends(material.heat.kappa, low, high), "alpha": ends(material.heat.alpha, low, high)}
     if material.elastic is not None:
         elastic = elastic_law(material.elastic)
+        if isinstance(elastic, HenckyWarm):
+            soft, stiff = ends(material.elastic.E, low, high)
+            elastic = elastic.one._replace(mu=elastic.one.mu * soft, lam=elastic.one.lam * soft)
+            found["stiffening"] = stiff / soft
         found |= {"lam": elastic.lam, "mu": elastic.mu}
         if material.expansion is not None:
             found |= {"gamma": stress_temperature_modulus(material.expansion, elastic), "reference": material.expansion.reference}
