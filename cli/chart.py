@@ -20,6 +20,7 @@ def chart(
     jobs: Jobs = "auto",
     set_: Set = None,
     quick: Annotated[bool, typer.Option("--quick", help="Three places a path, and no timing of compilation: under two minutes.")] = False,
+    compiling: Annotated[bool, typer.Option(help="Time compilation too, each kind of method in a fresh process: 10 to 25 s a kind.")] = True,
     peer: Peer = None,
     timeout: Annotated[float | None, limit("Stop a setting after this long: 90, 90s, 5min, 2h.")] = None,
     max_runs: MaxRuns = 10_000,
@@ -38,7 +39,7 @@ def chart(
         raise typer.BadParameter("--peer: say NAME=COMMAND")
     codes, told = [], []
     for config in configs:
-        found = one(config, out, jobs, set_, quick, peers, timeout, max_runs, as_json, quiet)
+        found = one(config, out, jobs, set_, quick, compiling and not quick, peers, timeout, max_runs, as_json, quiet)
         codes.append(found["exit_code"])
         told.append(found)
     if as_json:
@@ -46,7 +47,7 @@ def chart(
     raise typer.Exit(max(codes))
 
 
-def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, peers: dict, timeout: Any, max_runs: int, as_json: bool, quiet: bool) -> dict[str, Any]:
+def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, cold: bool, peers: dict, timeout: Any, max_runs: int, as_json: bool, quiet: bool) -> dict:
     """The chart of one config."""
     from mpm.study.chart import chart as draw_up
     from mpm.study.chart import with_chart
@@ -54,7 +55,7 @@ def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, peers: dict, 
 
     experiment = with_chart(load(config, set_), quick)
     folder = out or Path("results") / f"{experiment.name}-chart{'-quick' if quick else ''}"
-    result = draw_up(experiment, folder, Options(jobs, timeout), lambda: reporter(as_json, quiet), peers, cold=not quick, max_runs=max_runs)
+    result = draw_up(experiment, folder, Options(jobs, timeout), lambda: reporter(as_json, quiet), peers, cold, max_runs)
     picture = draw(result) if not result.stopped else None
     for line in result.sentences:
         say(line, as_json, quiet)

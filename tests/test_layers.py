@@ -28,6 +28,7 @@ PEERS = {
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs", "reduce"},
+    "study": {"plots"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat

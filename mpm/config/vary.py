@@ -20,7 +20,7 @@ from mpm.config.problems import MOST_FINDINGS, listed
 from mpm.config.slots import Path, Slot
 
 MOST_PARAMETERS = 100
-RESERVED = {"point", "sample", "obs", "dim", "x", "y", "z", "r"}
+RESERVED = {"point", "sample", "obs", "dim", "x", "y", "z", "r", "series", "grid", "particles"}  # dimensions and groups of the dataset
 
 
 @dataclass

@@ -117,7 +117,8 @@ def finish(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
         axis.set_major_locator(LogLocator(numticks=12))
         axis.set_minor_formatter(NullFormatter())
     load, rounds = data["load"].values, data.sizes["round"]
-    ax.set_xlabel(f"processor time of a run, least of {rounds} rounds (bars: to the median; load of the machine {load.min():.1f} to {load.max():.1f})")
+    said = f"least of {rounds} rounds (bars: to the median; load of the machine {load.min():.1f} to {load.max():.1f})"
+    ax.set_xlabel(f"processor time of {data.attrs.get('time_of', 'a run')}, {said}")
     ax.set_ylabel(f"{data['relative_error'].attrs.get('long_name', 'error')}"[:90])
     guides(ax)
 

@@ -24,6 +24,7 @@ from mpm.study.timing import Timings, compiled, timed
 from mpm.sweep.report import Reporter
 
 RELATIVE = ("error_displacement", "error_velocity", "error_stress", "error_temperature", "error_relative", "error_frequency", "error_damping")
+DEFAULT = ("error_displacement", "error_relative", "error_l2")
 KEPT = ("status", "error", "outcome", "run_id", "steps")
 
 
@@ -122,7 +123,7 @@ def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[d
     names = [name(case.values) for case in plan.cases]
     variables["label"] = Array(("setting",), np.array(names, dtype=object), {"long_name": "setting in words"})
     put = variables.__setitem__
-    put("relative_error", Array(("setting",), error, {"units": "1", "long_name": f"error, {about}", "reference_error": reference_error(experiment, tree)}))
+    put("relative_error", Array(("setting",), error, {"units": "1", "long_name": about, "reference_error": reference_error(experiment, tree)}))
     if largest is not None:
         put("relative_error_max", Array(("setting",), largest, {"units": "1", "long_name": "largest error, over the same scale"}))
     for kind, data, words in (("cpu", cpu, "processor time"), ("wall", wall, "wall time")):
@@ -173,18 +174,25 @@ def errors(experiment: Any, tree: Any) -> tuple[np.ndarray, np.ndarray | None, s
     if not wanted and experiment.exact is None:
         from mpm.study.richardson import against_limit
 
-        return against_limit(experiment, root, scale_of(experiment, tree))[0], None, "against the limit by Richardson extrapolation"
-    wanted = wanted or next(([key] for key in ("error_displacement", "error_relative", "error_l2") if key in root), [])
-    missing = [key for key in wanted if key not in root]
-    if missing or not wanted:
-        there = ", ".join(key for key in root.data_vars if key.startswith("error_"))
-        raise ValueError(f"chart.error: no run has {', '.join(missing) or 'an error'}; there are {there or 'none'}")
+        return against_limit(experiment, root, scale_of(experiment, tree))[0], None, "error against the limit by Richardson extrapolation"
+    wanted = wanted_errors(experiment, root.data_vars)
     scale = 1.0 if all(key in RELATIVE for key in wanted) else scale_of(experiment, tree)
     ok = root.status.values == OK
     found = np.max([np.abs(root[key].values) / (1.0 if key in RELATIVE else scale) for key in wanted], axis=0)
-    most = root["error_max"].values / scale if wanted == ["error_l2"] or wanted == ("error_l2",) else None
+    most = root["error_max"].values / scale if wanted == ["error_l2"] else None
     said = " and ".join(root[key].attrs.get("long_name", key) for key in wanted) + ("" if scale == 1.0 else f", over {scale:.4g}")
     return np.where(ok, found, np.nan), most, said
+
+
+def wanted_errors(experiment: Any, finals: Any) -> list[str]:
+    """The finals that are the error: those that the chart names, else the first of DEFAULT that a run has."""
+    named = list(experiment.chart.error) if experiment.chart is not None else []
+    wanted = named or next(([key] for key in DEFAULT if key in finals), [])
+    missing = [key for key in wanted if key not in finals]
+    if missing or not wanted:
+        there = ", ".join(key for key in finals if key.startswith("error_"))
+        raise ValueError(f"chart.error: no run has {', '.join(missing) or 'an error'}; there are {there or 'none'}")
+    return wanted
 
 
 def scale_of(experiment: Any, tree: Any) -> float:

@@ -27,6 +27,7 @@ from mpm.sweep.report import Reporter
 
 LEAST = 0.02  # s that a timing lasts at least
 WRITE = 5.0  # s between two writes of the file
+UNCOMPILED = ("output", "time", "title", "chart", "sweep", "smoke")
 COLD = """
 import json, sys
 from mpm.config import load
@@ -143,11 +144,15 @@ def peer(command: str) -> list[dict]:
 
 
 def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted) -> Timings:
-    """Processor seconds of import, compilation and one run, by method, in a fresh process with an empty cache."""
+    """Processor seconds of import, compilation and one run, by method, in a fresh process with an empty cache; methods of one `kind` share it."""
     found = Timings.at(path)
-    due = {method: point for method, point in points.items() if method not in found.compiling}
-    for method, point in due.items():
+    kinds = {method: kind(point) for method, point in points.items()}
+    for method, point in points.items():
         stop(halted, found)
+        same = next((other for other in kinds if kinds[other] == kinds[method] and other in found.compiling), None)
+        if same is not None:
+            found.compiling[method] = found.compiling[same]
+            continue
         reporter.beat({f"compiling {method}": 0.0})
         with tempfile.TemporaryDirectory(prefix="mpm-cold-") as folder:
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -161,3 +166,17 @@ def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted) -> 
         else:
             reporter.note(f"{method}: compiling apart failed: {(done.stderr.strip().splitlines() or ['no word'])[-1][:200]}")
     return found
+
+
+def kind(experiment: Any) -> str:
+    """What decides which code is compiled: the names in a config, without its numbers. Transfers of temperature differ in numbers, all but XPIC."""
+
+    def names(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: names(inner) for key, inner in value.items() if inner is not None and key not in UNCOMPILED}
+        return [names(inner) for inner in value] if isinstance(value, list) else value if isinstance(value, str) else ""
+
+    found = names(experiment.resolved())
+    found["grid"]["dimension"] = str(experiment.grid.dimension)
+    found["method"]["temperature"] = "xpic" if "xpic" in found["method"]["temperature"] else ""
+    return json.dumps(found, sort_keys=True)

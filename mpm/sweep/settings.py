@@ -16,7 +16,7 @@ from mpm.config.explain import Finding
 from mpm.config.names import Names
 from mpm.config.nodes import Origin, wrap
 from mpm.config.problems import ConfigError
-from mpm.config.vary import label
+from mpm.config.vary import RESERVED, label
 from mpm.records.variables import VARIABLES
 from mpm.sweep.cases import Case, Cases, Coordinate, Dimension, stop
 
@@ -103,6 +103,6 @@ def short(spoken: str, others: list[str]) -> str:
     taken = {other.rsplit(".", 1)[-1] for other in others}
     for length in range(1, len(words) + 1):
         name = "_".join(words[-length:])
-        if name.isidentifier() and name not in VARIABLES and name not in taken and name not in (*OWN, "setting", "x", "y", "z", "r"):
+        if name.isidentifier() and name not in VARIABLES and name not in taken and name not in {*OWN, "setting", *RESERVED}:
             return name
     return "set_" + "_".join(words)

@@ -1,0 +1,96 @@
+"""The figures of "Speed against accuracy" in the README, by one command: `python -m mpm.study.figures [NAME...]`.
+
+Each configs/studies/<name>.yaml that has a `chart:` is charted into results/<name>-chart (what is there is kept) and its figure goes to docs/chart_<name>.png;
+`theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for robin_cylinder: scikit-fem lives in an environment of its own.
+"""
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+from mpm.records.netcdf import write_whole
+
+ROOT = Path(__file__).parents[2]
+STUDIES = ROOT / "configs" / "studies"
+DOCS = ROOT / "docs"
+AUTOMATIC = ("automatic step", "cell")  # paths of refinement that leave the steps to the run
+BESIDE = "robin_cylinder"
+
+
+def main() -> None:
+    """Make what is named, or all."""
+    names = [path.stem for path in sorted(STUDIES.glob("*.yaml")) if "\nchart:" in path.read_text(encoding="utf-8")]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join([*names, *OTHERS])}; all unless given")
+    parser.add_argument("--peer", action="append", default=[], metavar="NAME=COMMAND")
+    parser.add_argument("--compiling", action="store_true", help="time compilation too (mpm chart does unless told otherwise)")
+    given = parser.parse_args()
+    peers = dict(pair.split("=", 1) for pair in given.peer)
+    for name in given.names or [*names, *OTHERS]:
+        for line in OTHERS[name]() if name in OTHERS else charted(name, peers if name == BESIDE else {}, given.compiling):
+            print(f"{name}: {line}", flush=True)
+
+
+def theory() -> list[str]:
+    """docs/theory.png."""
+    from mpm.plots.theory import transfers
+    from mpm.study.theory import dataset
+
+    transfers(dataset(), DOCS / "theory.png")
+    return [str(DOCS / "theory.png")]
+
+
+def return_map() -> list[str]:
+    """docs/chart_return_map.png."""
+    from mpm.plots.chart import speed_accuracy
+    from mpm.study.front import duration, percent
+    from mpm.study.return_map import dataset
+
+    data = dataset()
+    speed_accuracy(data, DOCS / "chart_return_map.png")
+    rows = zip(data.method.values, data.place.values, data.cpu_min.values, data.relative_error.values, strict=True)
+    return [f"{method}, {steps} steps: {duration(seconds)} a state, error {percent(error)}" for method, steps, seconds, error in rows]
+
+
+OTHERS = {"theory": theory, "return_map": return_map}
+
+
+def charted(name: str, peers: dict[str, str], cold: bool) -> list[str]:
+    """The chart of one study, and what it says."""
+    import xarray
+
+    from mpm.config import load
+    from mpm.plots.chart import speed_accuracy
+    from mpm.study.chart import chart, with_chart
+    from mpm.sweep.engine import Options
+
+    experiment = with_chart(load(STUDIES / f"{name}.yaml"))
+    result = chart(experiment, Path("results") / f"{name}-chart", Options(), peers=peers, cold=cold)
+    if result.stopped:
+        return [f"stopped ({result.stopped}); the same command goes on"]
+    with xarray.open_dataset(result.dataset, engine="h5netcdf") as data:
+        speed_accuracy(data.load(), DOCS / f"chart_{name}.png")
+        remember(name, experiment, data)
+    return result.sentences
+
+
+def remember(name: str, experiment, data) -> None:
+    """The settings at the automatic step, with error and time, into fronts.json: what `mpm plan --tol` chooses from (study/choose.py)."""
+    from mpm.study.choose import FRONTS, numerical, physics
+    from mpm.sweep.settings import plan
+
+    kept = [row for row in json.loads(FRONTS.read_text(encoding="utf-8")) if row["study"] != name] if FRONTS.exists() else []
+    for case in plan(experiment).cases:
+        settings = numerical(experiment.chart.methods[case.values["method"]].set)
+        error, seconds = (float(data[key].values[case.flat]) for key in ("relative_error", "cpu_min"))
+        if settings is None or case.values["path"] not in AUTOMATIC or not math.isfinite(error):
+            continue
+        row = {"study": name, "physics": physics(case.experiment), "method": case.values["method"], "set": settings}
+        kept.append(row | {"cell": case.experiment.grid.cell, "error": float(f"{error:.4g}"), "seconds": float(f"{seconds:.4g}")})
+    rows = ",\n".join(json.dumps(row, ensure_ascii=False) for row in sorted(kept, key=lambda row: row["study"]))
+    write_whole(FRONTS, f"[\n{rows}\n]\n".encode())
+
+
+if __name__ == "__main__":
+    main()

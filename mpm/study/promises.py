@@ -1,0 +1,100 @@
+"""Does `mpm plan --tol` keep its promise? `python -m mpm.study.promises` prints the table (needs the charts: `python -m mpm.study.figures` first).
+
+For the six charted problems and 3 %, 1 % and 0.3 %: what study/choose.py picks, the error that it then has, and its time over that of the cheapest setting of
+the chart which meets the tolerance with the same model (interleaved, least of ROUNDS). The charts that the method is chosen from are those of these problems:
+in sample for the method; the cell comes from pilots.
+"""
+
+import math
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+PROBLEMS = ("robin_slab", "robin_cylinder", "gaussian_box", "manufactured_2d", "standing_wave", "hencky_bar")
+TOLERANCES = (0.03, 0.01, 0.003)
+ROUNDS = 5
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One line of the table."""
+
+    problem: str
+    tolerance: float
+    method: str
+    cell: float
+    predicted: float
+    error: float
+    cost: float  # over the cheapest setting of the chart that meets the tolerance; nan where none does
+    cheapest: str
+    planning: float  # seconds
+
+    def text(self) -> str:
+        """As a row of Markdown."""
+        numbers = f"{100 * self.tolerance:g} % | {self.method}, cell {self.cell:.4g} | {100 * self.predicted:.2g} % | {100 * self.error:.2g} %"
+        return f"| {self.problem} | {numbers} | {'yes' if self.error <= self.tolerance else 'NO'} | {self.cost:.2f} | {self.cheapest} | {self.planning:.1f} |"
+
+
+def promise(name: str, experiment: Any, tolerance: float, charted: list[dict]) -> Kept:
+    """Choose, run, compare. `charted`: {label, error, seconds, experiment} of the chart's settings with the same model."""
+    from mpm.config import load
+    from mpm.runner import run_point
+    from mpm.study.choose import Gauge, choose
+
+    began = time.process_time()
+    choice = choose(experiment, tolerance)
+    planning = time.process_time() - began
+    point = load(experiment.template(), choice.settings)
+    run = run_point(point)
+    error = Gauge(experiment, choice.settings).error(run) if run.outcome.ok else math.inf
+    fit = sorted((row for row in charted if row["error"] <= tolerance), key=lambda row: row["seconds"])
+    rivals = [point, *(row["experiment"] for row in fit[:2])]
+    least = [math.inf] * len(rivals)
+    for _ in range(ROUNDS):
+        for k, rival in enumerate(rivals):
+            began = time.process_time()
+            run_point(rival, compare=False)
+            least[k] = min(least[k], time.process_time() - began)
+    cost = least[0] / min(least[1:]) if fit else math.nan
+    return Kept(name, tolerance, choice.method, choice.settings["grid.cell"], choice.predicted, error, cost, fit[0]["label"] if fit else "none", planning)
+
+
+def charted(experiment: Any, out: Path) -> list[dict]:
+    """The settings of a chart that compute the same model as the config itself."""
+    import numpy as np
+    import xarray
+
+    from mpm.study.choose import numerical, physics
+    from mpm.sweep.settings import plan
+
+    found = []
+    with xarray.open_dataset(out / "chart.nc", engine="h5netcdf") as data:
+        for case in plan(experiment).cases:
+            settings = numerical(experiment.chart.methods[case.values["method"]].set)
+            error, seconds = float(data.relative_error[case.flat]), float(data.cpu_min[case.flat])
+            if settings is None or physics(case.experiment) != physics(experiment) or not np.isfinite(error):
+                continue
+            found.append({"label": str(data.label[case.flat].values), "error": error, "seconds": seconds, "experiment": case.experiment})
+    return found
+
+
+def main() -> None:
+    """The table, and how many of its promises are kept."""
+    from mpm.config import load
+    from mpm.study.figures import STUDIES
+
+    print("| problem | tolerance | chosen | predicted | true | met | time over cheapest | cheapest charted | planning, s |\n" + "|---" * 9 + "|")
+    rows = []
+    for name in PROBLEMS:
+        experiment = load(STUDIES / f"{name}.yaml")
+        settings = charted(experiment, Path("results") / f"{name}-chart")
+        for tolerance in TOLERANCES:
+            rows.append(promise(name, experiment, tolerance, settings))
+            print(rows[-1].text(), flush=True)
+    met, costs = sum(row.error <= row.tolerance for row in rows), [row.cost for row in rows if math.isfinite(row.cost)]
+    print(f"\n{met} of {len(rows)} met; time over the cheapest at most {max(costs):.2f}, within 2 in {sum(cost <= 2 for cost in costs)} of {len(costs)}")
+
+
+if __name__ == "__main__":
+    main()
