@@ -19,9 +19,17 @@ def plan(
     """Say what a sweep would do.
 
     Points and which are there, the physics that is compiled, time-step limits and which binds, dimensionless groups, smaller models and what they would
-    save, time, memory and bytes. Runs nothing, but with --tol pilots: coarse runs that measure what a smaller model would be off by.
+    save, time, memory and bytes. Runs nothing, but with --tol pilots: coarse runs that measure what a smaller model would be off by, and that choose
+    basis, transfer, cell, particles and step: the method from the charted fronts (mpm chart), the cell from the pilots.
     """
     from mpm.sweep.outlook import outlook, said
 
-    found = outlook(load(config, set_, smoke), out, jobs, rerun, max_runs, tol)
-    document(found) if as_json else say(said(found))
+    experiment = load(config, set_, smoke)
+    found = outlook(experiment, out, jobs, rerun, max_runs, tol)
+    words = said(found)
+    if tol is not None:
+        from mpm.study.choose import offer, told
+
+        found["settings"] = offer(experiment, tol)
+        words += "\n" + told(found["settings"])
+    document(found) if as_json else say(words)

@@ -1,6 +1,6 @@
 """Method, cell and step for a tolerance (`mpm plan --tol 1%`): the method from the charted fronts, the cell from pilot runs of the user's own scene.
 
-    choose(experiment, tolerance) -> Choice
+    choose(experiment, tolerance) -> Choice      offer, told: the same for `mpm plan`
 
 1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json, from `python -m mpm.study.figures`).
    Of the numerical methods in them, at the automatic step, the one that reaches the tolerance in the least time, over all of those charts, is taken.
@@ -15,7 +15,7 @@ import json
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -240,3 +240,25 @@ def observed(experiment: Any, finals: dict[str, float]) -> list[str]:
     if not found:
         raise NoChoice("nothing to keep a tolerance of: name `exact:`, or observables or probes under `output:`")
     return found
+
+
+def offer(experiment: Any, tolerance: float) -> dict[str, Any]:
+    """`choose` as plain data for `mpm plan --tol`: settings, predicted error, seconds and where they come from; or `none`: why not."""
+    try:
+        found = choose(experiment, tolerance)
+    except (NoChoice, ValueError) as why:
+        return {"tolerance": tolerance, "none": str(why)}
+    return {"tolerance": tolerance, **asdict(found)}
+
+
+def told(found: dict[str, Any]) -> str:
+    """The same in words, ready to be pasted behind a command."""
+    if "none" in found:
+        return f"settings  none for {100 * found['tolerance']:g} %: {found['none']}"
+    from mpm.config.vary import label
+
+    chosen = " ".join(f"--set '{path}={value if isinstance(value, float | int | str) else json.dumps(value)}'" for path, value in found["settings"].items())
+    pilots = ", ".join(f"{label(pilot['cell'])} m {100 * pilot['error']:.2g} %" for pilot in found["pilots"])
+    expected = f"error {100 * found['predicted']:.2g} % expected, {found['seconds']:.2g} s a run"
+    lines = [f"settings  for {100 * found['tolerance']:g} %: {found['method']}, {expected}"]
+    return "\n".join([*lines, f"          {chosen}", f"          method from the charts of {', '.join(found['charts'])}; cell from pilots: {pilots}"])
