@@ -63,4 +63,11 @@ class Manufactured(Kind):
     thermal_rate: AngularVelocity = doc(2.0, description="angular frequency of the temperature")
 
 
-MOVING: tuple[type[Kind], ...] = (RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured)
+class CooksMembrane(Kind):
+    """The static deflection of a tapered panel under a shear load, nearly incompressible: volumetric locking."""
+
+    kind: ClassVar[str] = "cooks_membrane"
+    body: str | None = doc(None, description=BODY)
+
+
+MOVING: tuple[type[Kind], ...] = (RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured, CooksMembrane)

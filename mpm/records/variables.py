@@ -74,6 +74,8 @@ TABLE = [
     ("error_temperature", "", "1", POINT, "error of temperature over its size, root mean square over the run"),
     ("error_frequency", "", "1", POINT, "relative error of the frequency"),
     ("error_damping", "", "1", POINT, "relative error of the damping rate"),
+    ("error_tip", "", "1", POINT, "relative error of the deflection of the tip"),
+    ("tip_displacement", "", "m", SERIES, "deflection of the tip"),
     ("amplitude_displacement", "U", "m", SERIES, "displacement in the shape of the wave"),
     ("amplitude_temperature", "", "K", SERIES, "temperature in the shape of the wave"),
     # one number a point

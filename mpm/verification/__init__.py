@@ -7,6 +7,7 @@ To add    a file with `exact`, its kind in config.output, a line in EXACT; a con
 
 from mpm.verification import (
     adiabatic,
+    cooks_membrane,
     free_fall,
     gaussian_box,
     hencky_bar,
@@ -45,6 +46,7 @@ EXACT = {
     "nafems_t4": nafems_t4.exact,
     "gaussian_box": gaussian_box.exact,
     "stefan": stefan.exact,
+    "cooks_membrane": cooks_membrane.exact,
 }
 
 LOADED = ("cooks_membrane",)  # scenes that have loads of their own
