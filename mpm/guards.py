@@ -39,6 +39,16 @@ class Guards:
         self.holes: list[int] | None = None
         self.warned: list[str] = []
 
+    def memory(self) -> dict:
+        """What was seen so far (mpm.memory)."""
+        return {name: value for name, value in vars(self).items() if name != "data"} | {"data": [vars(one) for one in self.data]}
+
+    def recall(self, found: dict) -> None:
+        """As it was when `memory` was kept."""
+        for one, seen in zip(self.data, found.pop("data"), strict=True):
+            vars(one).update(seen)
+        vars(self).update(found)
+
     def block(self, scene, clock) -> Outcome:
         """Before a block of steps, and before a record."""
         for name, body, data in zip(scene.names, scene.bodies, self.data, strict=True):

@@ -13,6 +13,7 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
 from mpm.error import Errors
+from mpm.memory import rows
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
 
@@ -91,6 +92,21 @@ class Recorder:
             values.pop()
         if self.frames and self.frames[-1][0] == when:
             self.frames.pop()
+
+    def memory(self) -> dict:
+        """What was recorded so far (mpm.memory)."""
+        frames = [{"time": when, "grid": grid, "particles": particles} for when, grid, particles in self.frames]
+        return {"times": rows(self.times), "series": {name: rows(values) for name, values in self.series.items()}, "frames": frames,
+                "crossed": self.crossed, "seen": {probe: list(pair) for probe, pair in self.seen.items()},
+                "sums": self.errors.sums if self.errors is not None else {}}  # fmt: skip
+
+    def recall(self, found: dict) -> None:
+        """As it was when `memory` was kept."""
+        self.times, self.series = found["times"].tolist(), {name: values.tolist() for name, values in found["series"].items()}
+        self.frames = [(frame["time"], frame["grid"], frame["particles"]) for frame in found["frames"]]
+        self.crossed, self.seen = found["crossed"], {probe: tuple(pair) for probe, pair in found["seen"].items()}
+        if self.errors is not None:
+            self.errors.sums = found["sums"]
 
     def mechanical(self, scene, clock):
         """Sums and extrema of motion."""

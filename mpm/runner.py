@@ -1,33 +1,38 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
-run_point(experiment, beat, compare) -> Run      run_points(experiments) -> list of Runs, for material points
+run_point(experiment, beat, compare, keeper) -> Run      run_points(experiments) -> list of Runs, for material points
 warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
 
+import itertools
+
 import numpy as np
 
 from mpm.costs import estimate
+from mpm.memory import Turn
 from mpm.scene.inventory import physics
 from mpm.state import Run
 
 
-def run_point(experiment, beat=None, compare: bool = True) -> Run:
+def run_point(experiment, beat=None, compare: bool = True, keeper=None) -> Run:
     """Run one point (no sweep). A failure of the model is the Run's outcome; SceneError says that no method here can run the config.
 
     compare    False leaves out the errors against the exact solution, which cost time that a run does not need; what starts from it still does
+    keeper     what the run remembers (mpm.memory), to go on where it was cut; None where nobody keeps it
     """
     if getattr(experiment.model, "kind", "full") == "auto":
         from mpm.reduce.choose import smallest
 
-        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare))
+        turns = itertools.count()
+        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, keeper and Turn(keeper, next(turns))))
         run.finals |= misfits(experiment, run)
         return run
-    return run_named(experiment, beat, compare)
+    return run_named(experiment, beat, compare, keeper)
 
 
-def run_named(experiment, beat=None, compare: bool = True) -> Run:
+def run_named(experiment, beat=None, compare: bool = True, keeper=None) -> Run:
     """Run the model that the config names."""
     from mpm.verification import exact_solution
 
@@ -35,7 +40,7 @@ def run_named(experiment, beat=None, compare: bool = True) -> Run:
     if experiment.grid.dimension == 0:
         from mpm.scene.point import run_zero
 
-        run = run_zero(experiment, exact if compare else None, beat)
+        run = run_zero(experiment, exact if compare else None, beat, keeper)
     elif experiment.moving:
         from mpm.scene.build import build
         from mpm.scene.scaling import physical
@@ -43,11 +48,11 @@ def run_named(experiment, beat=None, compare: bool = True) -> Run:
 
         scene = build(experiment, exact)
         scene.watch.exact = scene.watch.exact if compare else None
-        run = physical(simulate(scene, beat), experiment)
+        run = physical(simulate(scene, beat, keeper), experiment)
     else:
         from mpm.scene.rigid import run_rigid
 
-        run = run_rigid(experiment, exact, beat, compare)
+        run = run_rigid(experiment, exact, beat, compare, keeper)
     return told(experiment, run)
 
 

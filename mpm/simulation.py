@@ -22,6 +22,7 @@ from mpm.integrate.heat_step import heat_step
 from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.timestep import Limits, limits
+from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
 from mpm.state import Run, Thermal
@@ -81,12 +82,19 @@ class Clock:
         self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
         self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
         self.swell = 1.0
+        self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output, start of its interval, heat step under way, heat steps (0: none yet)
+        self.spent = 0.0  # wall time before the run was cut [s]
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
             report[SPEED] = float(np.max(np.sum(body.particles.v.astype(float) ** 2, axis=1)))
             report[RATE] = float(np.max(np.abs(body.particles.C)))
             report[SWELL] = float(np.max(body.particles.J))
+
+    def recall(self, found: dict) -> None:
+        """As it was when `vars(self)` was kept."""
+        self.reports[...] = found["reports"]
+        vars(self).update({name: value for name, value in found.items() if name != "reports"})
 
     def reset(self) -> None:
         self.reports[:] = 0.0
@@ -99,15 +107,34 @@ class Clock:
         self.dissipated += float(np.sum(self.reports[:, DISSIPATED]))
 
 
-def simulate(scene: Scene, beat=None) -> Run:
-    """Run the scene to its end or its failure. `beat(fraction, time) -> bool` is asked between blocks; true stops the run."""
+def simulate(scene: Scene, beat=None, keeper=None) -> Run:
+    """Run the scene to its end or its failure.
+
+    `beat(fraction, time) -> bool` is asked between blocks; true stops the run. keeper: mpm.memory; the run goes on where it was cut, with the same bits.
+    """
     began = time.perf_counter()
     clock, recorder, guards = Clock(scene), Recorder(scene), Guards(scene)
     buffers = work_arrays(scene)
-    recorder.record(scene, clock)
-    result = guards.frame(scene, clock, recorder.series)
-    for end in scene.times[1:]:
-        result = interval(scene, clock, recorder, guards, buffers, float(end), beat)
+    result, before = outcome(COMPLETED), keeper.found if keeper is not None else None
+    if before is not None:
+        clock.recall(before["clock"])
+        recorder.recall(before["recorder"])
+        guards.recall(before["guards"])
+        fill(scene.bodies, before["bodies"])
+    else:
+        recorder.record(scene, clock)
+        result = guards.frame(scene, clock, recorder.series)
+
+    def look() -> bool:
+        stop = beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale)
+        if keeper is not None and keeper.due(stop):
+            passed = {"spent": clock.spent + time.perf_counter() - began}
+            parts = {"recorder": recorder.memory(), "guards": guards.memory(), "bodies": arrays(scene.bodies)}
+            keeper.save({"clock": vars(clock) | passed, **parts})
+        return stop
+
+    for end in scene.times[clock.output :]:
+        result = interval(scene, clock, recorder, guards, buffers, float(end), look)
         if not result.ok:
             break
         recorder.record(scene, clock)
@@ -115,7 +142,8 @@ def simulate(scene: Scene, beat=None) -> Run:
         if not result.ok:
             recorder.drop()
             break
-    run = recorder.run(scene, clock, explain(result, scene, clock), time.perf_counter() - began)
+        clock.output += 1
+    run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
     if guards.warned:
         run.facts["warnings"] = guards.warned
     return run
@@ -132,21 +160,28 @@ def work_arrays(scene: Scene):
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
 
 
-def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, beat) -> Outcome:
-    """Advance to the output time `end`."""
-    start, now = clock.time, limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    pace = scene.heat_step or now.pace
-    heat_steps = max(1, math.ceil((end - start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
-    for k in range(heat_steps):
-        until = start + (end - start) * (k + 1) / heat_steps
-        result = warm_bodies(scene, clock, buffers, until - clock.time, now)
-        if not result.ok:
-            return result
-        recorder.watch(scene, until)
-        result = march(scene, clock, guards, buffers, until, beat)
+def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, look) -> Outcome:
+    """Advance to the output time `end`; from within the interval where the run was cut there."""
+    cut = clock.parts > 0
+    if not cut:
+        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        pace = scene.heat_step or now.pace
+        clock.start, clock.part = clock.time, 0
+        clock.parts = max(1, math.ceil((end - clock.start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
+    while clock.part < clock.parts:
+        until = clock.start + (end - clock.start) * (clock.part + 1) / clock.parts
+        if not cut:
+            result = warm_bodies(scene, clock, buffers, until - clock.time, now)
+            if not result.ok:
+                return result
+            recorder.watch(scene, until)
+        cut = False
+        result = march(scene, clock, guards, buffers, until, look)
         if not result.ok:
             return result
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        clock.part += 1
+    clock.parts = 0
     return guards.block(scene, clock)
 
 
@@ -195,7 +230,7 @@ def lost_to_grid(scene: Scene, body, rows):
     return specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)
 
 
-def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, beat) -> Outcome:
+def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     nodes, force, boxes, _ = buffers
     particles = sum(len(body.particles.m) for body in scene.bodies)
@@ -230,7 +265,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, bea
             return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
         clock.time = until if block == count else clock.time + dt * block
-        if beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale):
+        if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     return outcome(COMPLETED)
 

@@ -14,7 +14,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "jit": 0, "tensors": 0, "outcome": 0, "state": 0,
+    "jit": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "integrate": 2,
     "error": 2, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 
+from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, Outcome, outcome
 from mpm.point.march import advance
 from mpm.point.state import COLUMNS, NO_EQUILIBRIUM, WIDTH, Matter, Program, Progress, Rigid
@@ -23,16 +24,20 @@ def start(matter: Matter, program: Program) -> Progress:
     )  # fmt: skip
 
 
-def solve(matter: Matter, program: Program, beat=None) -> list[Run]:
+def solve(matter: Matter, program: Program, beat=None, keeper=None) -> list[Run]:
     """Carry every point to its end or its failure. `beat(fraction, time) -> bool` is asked between output times; true stops the batch.
 
-    The arrays of `matter` are the run's own: solving changes them.
+    The arrays of `matter` are the run's own: solving changes them. keeper: mpm.memory; the points go on where they were cut, with the same bits.
     """
     began = time.perf_counter()
     progress = start(matter, program)
     out = np.zeros((len(program.times), WIDTH))
     most = int(np.max(np.diff(program.first))) - 1
-    done, rows, stopped = 0, 1 if beat is not None else most, False
+    done, rows, stopped, earlier = 0, 1 if beat is not None or keeper is not None else most, False, 0.0
+    before = keeper.found if keeper is not None else None
+    if before is not None:
+        done, earlier, out[...] = before["done"], before["spent"], before["out"]
+        fill((matter, progress), before["points"])
     while done < most and not stopped:
         asked = time.perf_counter()
         advance(matter, program, progress, out, rows)
@@ -40,7 +45,9 @@ def solve(matter: Matter, program: Program, beat=None) -> list[Run]:
         spent = time.perf_counter() - asked
         rows = max(1, min(2 * rows, int(rows * QUIET / max(spent, 1e-6))))
         stopped = beat is not None and done < most and beat(done / most, float(np.min(progress.time)))
-    wall = (time.perf_counter() - began) / len(matter.density)
+        if keeper is not None and done < most and keeper.due(stopped):
+            keeper.save({"done": done, "spent": earlier + time.perf_counter() - began, "out": out, "points": arrays((matter, progress))})
+    wall = (earlier + time.perf_counter() - began) / len(matter.density)
     return [run(matter, program, progress, out, i, wall) for i in range(len(matter.density))]
 
 

@@ -19,6 +19,8 @@ CLEAN = 1e-9  # of the span: what a solve may leave beyond the bounds
 class BoundedSteps(NewtonSteps):
     """Steps of one body whose system was made with `hats`."""
 
+    CARRIES = (*NewtonSteps.CARRIES, "euler")
+
     def __init__(self, system, tolerance: float):
         super().__init__(system, tolerance, 2)
         self.close = TIGHT / tolerance

@@ -99,6 +99,7 @@ def chebyshev(problem, first, final, changes, h, f0, q0, dt, s, new, f1):
 class ChebyshevSteps(Enthalpy):
     """Explicit steps of one body, as many stages as the step needs."""
 
+    CARRIES = ("state", "q", "now", "rate", "taken", "evaluations")
     replan, power, floor = False, 3, 0.0
 
     def __init__(self, system, tolerance: float):

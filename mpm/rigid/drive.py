@@ -3,6 +3,7 @@
 A method has
     attempt(dt) -> error over tolerance (nan or inf: rejected)      accept()
     dense(s) -> (basis (S, m), columns (m, N), exchanged (S,))      temperature(state) -> theta - zero      heat(state) [J]
+    CARRIES (names of what goes from step to step: what a run must remember)
     state, first (state at the start), first_size(end), power (error ~ dt^power), replan (a new size is costly), radius [1/s] (0 without an explicit limit)
     floor (steps this short are taken whatever their error: the cell resolves nothing faster), longest (of a step, so that none misses a programme)
 state(t + s dt) = before + basis @ columns is the method's own variable: temperature, or specific enthalpy.
@@ -14,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import brentq
 
+from mpm.memory import rows
 from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW
 from mpm.rigid.nodes import interpolate
 
@@ -29,7 +31,8 @@ class Watch:
     thresholds: list[tuple[int, float]]
     sight: tuple[np.ndarray, np.ndarray]
     shots: tuple[np.ndarray, np.ndarray, np.ndarray]  # times, and nodes and values of the points
-    stop: object = None
+    stop: object = None  # stop(fraction, time) -> whether to stop
+    keeper: object = None  # mpm.memory
 
 
 @dataclass
@@ -51,6 +54,18 @@ class Trace:
     code: int = COMPLETED
     time: float = 0.0
     final: np.ndarray | None = None
+
+    def memory(self) -> dict:
+        """What was seen so far (mpm.memory)."""
+        return {name: rows(value) if name in ROWS else value for name, value in vars(self).items()}
+
+    @classmethod
+    def recalled(cls, found: dict) -> "Trace":
+        """As it was when `memory` was kept."""
+        return cls(**{name: list(value) if name in ROWS else value for name, value in found.items()})
+
+
+ROWS = ("probes", "mean", "least", "most", "heat", "exchanged", "shots")
 
 
 def record(trace, watch, method, states, exchanged, weight):
@@ -78,11 +93,9 @@ def crossing(method, watch, before, t, dt, probe, level):
     return t + dt * brentq(above, 0.0, 1.0, xtol=1e-12) if low * high < 0 else t + dt
 
 
-def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) -> Trace:
-    """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked; where no such step can be taken, a shorter one is."""
-    trace, t = Trace(crossings=[math.nan] * len(watch.thresholds)), 0.0
-    state = method.state
-    ahead = np.asarray(watch.times, dtype=float)
+def begun(method, watch: Watch, ahead, weight) -> tuple:
+    """The start of a run: (trace, time, outputs shown, snapshots shown, temperatures at the probes)."""
+    trace, state = Trace(crossings=[math.nan] * len(watch.thresholds)), method.state
     first = int(np.searchsorted(ahead, 0.0, side="right"))
     record(trace, watch, method, [state] * first, [0.0] * first, weight)
     shown = int(np.searchsorted(watch.shots[0], 0.0, side="right"))
@@ -91,9 +104,25 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
     for k, (probe, level) in enumerate(watch.thresholds):
         if seen[probe] == level:
             trace.crossings[k] = 0.0
-    wanted = fixed or min(method.first_size(end), method.longest)
-    count = max(1, math.ceil((end - t) / wanted * (1 - 1e-9)))
-    dt = (end - t) / count
+    return trace, 0.0, first, shown, seen
+
+
+def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, before: dict | None = None) -> Trace:
+    """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked; where no such step can be taken, a shorter one is.
+
+    before: what `watch.keeper` was given when the run was cut.
+    """
+    ahead = np.asarray(watch.times, dtype=float)
+    if before is None:
+        trace, t, first, shown, seen = begun(method, watch, ahead, weight)
+        wanted = fixed or min(method.first_size(end), method.longest)
+        count = max(1, math.ceil((end - t) / wanted * (1 - 1e-9)))
+        dt = (end - t) / count
+    else:
+        vars(method).update(before["method"])
+        trace, seen = Trace.recalled(before["trace"]), before["seen"]
+        t, count, dt, first, shown = (before[name] for name in ("t", "count", "dt", "first", "shown"))
+    state = method.state
     while count > 0:
         error = method.attempt(dt)
         if fixed:
@@ -127,9 +156,6 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
         seen, t = now, new
         trace.steps += 1
         trace.smallest, trace.largest = min(trace.smallest, dt), max(trace.largest, dt)
-        if watch.stop is not None and watch.stop(t / end, t):
-            trace.code = BUDGET if count else COMPLETED
-            break
         if count and fixed and dt < fixed * (1 - 1e-9):  # back to the size that was asked for
             count = max(1, math.ceil((end - t) / min(2 * dt, fixed) * (1 - 1e-9)))
             dt = (end - t) / count
@@ -140,6 +166,13 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None) 
             if not method.replan or count - fewer > 2 or factor < 0.9:
                 count = fewer
                 dt = (end - t) / count
+        stop = watch.stop is not None and watch.stop(t / end, t)
+        if watch.keeper is not None and count and watch.keeper.due(stop):
+            carried = {name: getattr(method, name) for name in method.CARRIES}
+            watch.keeper.save({"t": t, "count": count, "dt": dt, "first": first, "shown": shown, "seen": seen, "trace": trace.memory(), "method": carried})
+        if stop:
+            trace.code = BUDGET if count else COMPLETED
+            break
     trace.time = t
     trace.final = state
     return trace

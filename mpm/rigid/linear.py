@@ -82,6 +82,7 @@ def stages(problem, band, a, error, dt, u, supply, received, k, flux):
 class LinearSteps:
     """Implicit steps of one body; the driver's protocol is in mpm.rigid.drive."""
 
+    CARRIES = ("state", "q", "now")
     replan, radius = True, 0.0  # a new size costs a factorisation
 
     def __init__(self, system, tolerance: float, order: int = 4):

@@ -48,6 +48,7 @@ def jacobian(problem, band, h, dt, slope):
 class NewtonSteps(Enthalpy):
     """Implicit steps of one body on enthalpy."""
 
+    CARRIES = ("state", "q", "now", "iterations")
     replan, radius, close = False, 0.0, CLOSE
 
     def __init__(self, system, tolerance: float, order: int = 2):

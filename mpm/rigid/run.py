@@ -11,7 +11,7 @@ from mpm.materials.roles import enthalpy, value
 from mpm.outcome import COMPLETED, Outcome, outcome
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
-from mpm.rigid.drive import Watch, drive
+from mpm.rigid.drive import Trace, Watch, drive
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
@@ -48,6 +48,7 @@ class RigidRun:
     limits: dict[str, float]
     snapshots: np.ndarray = field(repr=False)
     bodies: list[tuple[System, Any, tuple]] = field(repr=False)
+    spent: float = 0.0  # wall time before the run was cut [s]
 
     def sample(self, x: np.ndarray, body: int | None = None) -> np.ndarray:
         """Temperature [K] at points x (P, d) at the last time; nan outside every body, unless one is named: then its splines go on."""
@@ -111,7 +112,7 @@ def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
     return found
 
 
-def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None):
+def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None, keeper=None):
     """Heat in rigid bodies from 0 to `end` [s]: a RigidRun.
 
     bodies      RigidBody each; they do not touch, and each has its own nodes
@@ -120,9 +121,11 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     method      Method; stop(fraction, time) -> True ends the run with outcome `budget`
     snapshots   (times (S,), points (P, d)): temperatures there in `RigidRun.snapshots`, nan outside the bodies
     reference   temperature at which heat content counts as zero [K]; the first body's start unless given
+    keeper      mpm.memory: the run goes on where it was cut, with the same bits
     Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric).
     """
     start = time.perf_counter()
+    before = (keeper.found if keeper is not None else None) or {"done": [], "drive": None, "spent": 0.0}
     method, probes, thresholds = method or Method(), probes or {}, list(thresholds)
     axisymmetric = space == "axisymmetric"
     dimension = 2 if axisymmetric else int(space)
@@ -142,14 +145,36 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
         here = np.flatnonzero(body.shape.distance(points) <= 1e-9 * h)
         shots = (shot_times, *evaluated(system.geometry.nodes, points[here]))
         beat = None if stop is None else (lambda part, t, k=k: stop((k + part) / len(bodies), t))
-        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat)
-        trace = drive(steps, watch, float(end), system.geometry.volume, method.step)
+        inner = None if keeper is None else Within(keeper, [trace for _, _, trace, _ in parts], before["spent"], start)
+        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat, inner)
+        if k < len(before["done"]):
+            trace = Trace.recalled(before["done"][k])
+        else:
+            trace = drive(steps, watch, float(end), system.geometry.volume, method.step, before["drive"] if k == len(before["done"]) else None)
         parts.append((system, steps, trace, mine))
         seen[: len(trace.shots), here] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(here))
         run_bodies.append((system, steps, (body.shape, trace.final)))
         if trace.code != COMPLETED:
             break
-    return _gather(parts, run_bodies, seen, times, names, thresholds, reference, start)
+    run = _gather(parts, run_bodies, seen, times, names, thresholds, reference, start)
+    run.spent = before["spent"]
+    return run
+
+
+@dataclass(frozen=True)
+class Within:
+    """The keeper of one body's steps: with them it keeps the bodies that are done."""
+
+    keeper: Any
+    done: list[Trace]
+    spent: float
+    start: float
+
+    def due(self, stop: bool) -> bool:
+        return self.keeper.due(stop)
+
+    def save(self, memory: dict) -> None:
+        self.keeper.save({"done": [trace.memory() for trace in self.done], "drive": memory, "spent": self.spent + time.perf_counter() - self.start})
 
 
 def _content(system: System, reference: float) -> float:

@@ -40,9 +40,9 @@ class Spot:
         return kinds(self.laws), len(self.until), len(self.levels)
 
 
-def run_zero(experiment, exact=None, beat=None) -> Run:
+def run_zero(experiment, exact=None, beat=None, keeper=None) -> Run:
     """One material point. `exact(t)` where the config names its solution: {series: values}."""
-    return together([spot(experiment, exact)], beat)[0]
+    return together([spot(experiment, exact)], beat, keeper)[0]
 
 
 def batch(experiments, exacts=None) -> list[Run]:
@@ -68,7 +68,7 @@ def parts(members: list[int], rows: list[int]) -> list[list[int]]:
     return [[members[k] for k in np.flatnonzero(cut == c)] for c in np.unique(cut)]
 
 
-def together(spots: list[Spot], beat=None) -> list[Run]:
+def together(spots: list[Spot], beat=None, keeper=None) -> list[Run]:
     """Runs of points of one key."""
     rows = np.array([len(one.times) for one in spots])
     levels = np.array([[kelvin for _, kelvin in one.levels.values()] for one in spots], dtype=float).reshape(len(spots), -1)
@@ -83,7 +83,7 @@ def together(spots: list[Spot], beat=None) -> list[Run]:
         safety=np.array([one.safety for one in spots]),
         thresholds=levels,
     )
-    runs = solve(stack([one.laws for one in spots]), program, beat)
+    runs = solve(stack([one.laws for one in spots]), program, beat, keeper)
     for one, run in zip(spots, runs, strict=True):
         finish(one, run)
     return runs

@@ -34,7 +34,7 @@ def rigid_bodies(experiment, field=None) -> list:
     return bodies
 
 
-def run_rigid(experiment, exact=None, beat=None, compare: bool = True) -> Run:
+def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=None) -> Run:
     """Heat alone, bodies that do not move. `exact(x, t)` where the config names its solution; it is compared with unless told otherwise."""
     from mpm.records.variables import dataset_name, threshold
     from mpm.rigid import solve
@@ -51,7 +51,8 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True) -> Run:
     look = Looks(experiment, times, exact if compare else None)
     field = (lambda x: exact(x + shift, 0.0)) if getattr(exact, "starts", False) else None
     bodies, end, probes = rigid_bodies(experiment, field), experiment.time.end, experiment.output.probes
-    solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=(look.times, look.points))
+    shots = look.times, look.points
+    solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=shots, keeper=keeper)
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots[: len(solved.times)], shift)
@@ -61,7 +62,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True) -> Run:
     facts = solved.facts | {"unknowns": solved.unknowns, "rejected": solved.rejected, "limits": solved.limits, "binds": "accuracy"}
     run = Run(solved.outcome, solved.times, series, finals, steps=solved.steps, facts=facts)
     look.frames(solved.snapshots, run)
-    run.wall_time = time.perf_counter() - began
+    run.wall_time = solved.spent + time.perf_counter() - began
     return run
 
 

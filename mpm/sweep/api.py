@@ -73,8 +73,8 @@ def execute(
                 run_engine(supervisor, options)
         finally:
             reporter.close()
-        hurried = supervisor.signals > 1  # two seconds are left at most, and the next sweep collects too
-        collected = gather() if not hurried or len(lines) < QUICK else False
+        hurried = supervisor.signals > 0  # two seconds are left at most, and the next sweep collects too
+        collected = gather() if supervisor.signals < 2 and (not hurried or len(lines) < QUICK) else False
     found = counts(points, lines, skipped(plan))
     stopped = supervisor.broken or supervisor.stopped
     if supervisor.broken:
@@ -190,8 +190,8 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
 
     out    folder; `results/<config name>` unless given
     jobs   worker processes; "auto" is one a core; 0 runs the points in this process
-    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared
-    Ctrl-C finishes what runs, collects, and raises KeyboardInterrupt; the same call again goes on.
+    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared, checkpoint
+    Ctrl-C leaves checkpoints of what runs, collects, and raises KeyboardInterrupt; the same call again goes on from them.
     """
     options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)
     result = execute(experiment, Path(out) if out is not None else None, options, reporter, max_runs)

@@ -5,7 +5,8 @@
 The engine owns order, retries, time limits and signals; an executor owns processes; the store owns the disk. A point counts when its file
 is on disk, so killing the engine at any moment loses only what was running.
 
-Signals   first Ctrl-C: finish what runs, collect; second: stop now. SIGTERM: stop now (running points are lost), collect if that is quick.
+Stopping  by Ctrl-C, SIGTERM, the time budget or too many failures: what runs has LEAVE seconds to end or to leave a checkpoint; then collect, where
+          that is quick. A second signal: stop now. The same command again goes on from the checkpoints.
 """
 
 import math
@@ -15,6 +16,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from mpm.records.checkpoint import EVERY
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, OK, STATUS, TIMEOUT
 from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
@@ -24,6 +26,7 @@ from mpm.sweep.store import Store
 
 POLL = 0.2  # s
 COLLECT = 30.0  # least seconds between two datasets while running; 20 times the cost of one, if that is more
+LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stopped
 GRACE = 2.0  # s that a point over its time has to stop by itself
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
 RUNNER = "mpm.runner"  # the module that computes: run_point, warm, estimate
@@ -38,6 +41,7 @@ class Options:
     rerun      None (only what has no record), "failed" (and what is not ok), "stale" (and what other source made), "all"
     scheduler  a Dask scheduler's address, or "local" for one of this machine with `jobs` workers; None: processes of our own
     shared     its workers write into the sweep's folder, which all of them see; otherwise records come over the wire
+    checkpoint seconds between two checkpoints of a running point; 0: none
     """
 
     jobs: int = 1
@@ -49,6 +53,7 @@ class Options:
     smoke: bool = False
     scheduler: str | None = None
     shared: bool = False
+    checkpoint: float = EVERY
     runner: str = field(default_factory=lambda: RUNNER)
 
 
@@ -113,25 +118,23 @@ class Engine:
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
         self.partial = partial  # collects what is there; called now and then
         self.due: deque[str] = deque(missing(points, lines, options.rerun))
+        if options.rerun == "all":
+            store.forget(self.due)
         self.alone: set[str] = store.own(list(self.due))  # also points that died, or were in a batch that died or overran
         self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
         self.pace, self.names = Pace(), store.batch_names()
         self.failures = self.ran = self.signals = 0
         self.stopped = self.broken = ""
+        self.asked = math.nan  # when all that runs was asked to leave
         self.began = self.collected = time.monotonic()
         self.cost = 0.0
         self.executor: Executor | None = None
 
     def signal(self, kind: str) -> None:
         """A signal came: "interrupted" or "terminated". Safe to call from a handler."""
-        self.signals += 2 if kind == "terminated" else 1
+        self.signals += 1
         self.stopped = kind
-
-    @property
-    def leaving(self) -> bool:
-        """Whether what runs is given up: after any stop but a first Ctrl-C."""
-        return bool(self.stopped) and (self.signals > 1 or self.stopped != "interrupted")
 
     def run(self, executor: Executor) -> None:
         """Until every due point has a record, or something stops the sweep."""
@@ -141,7 +144,7 @@ class Engine:
                 executor.wanted = len(self.running) + (0 if self.stopped else len(self.due))
                 while executor.free and self.due and not self.stopped:
                     self.hand_out(executor)
-                if self.leaving:
+                if self.stopped and self.left(executor):
                     break
                 for event in executor.poll(POLL):
                     self.hear(event)
@@ -151,6 +154,14 @@ class Engine:
         for gone in list(self.running.values()):  # stopped, but records may have reached the disk before their news reached us
             self.news(gone.task)
         self.running.clear()
+
+    def left(self, executor: Executor) -> bool:
+        """The sweep is stopped: ask what runs to leave; whether there is no more time for that."""
+        if math.isnan(self.asked):
+            self.asked = time.monotonic()
+            for task in self.running:
+                executor.cancel(task, "cancel")
+        return self.signals > 1 or time.monotonic() - self.asked > LEAVE
 
     def hand_out(self, executor: Executor) -> None:
         """Start the next point, or the next few where they are tiny."""
@@ -162,7 +173,8 @@ class Engine:
             run_ids.append(self.due.popleft())
         self.attempts.update(run_ids)
         jobs = tuple(Job(run_id, self.points.cases[run_id].experiment.resolved(), self.attempts[run_id]) for run_id in run_ids)
-        task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "")
+        seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
+        task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "", seen)
         self.running[task.id] = Running(task, time.monotonic())
         executor.submit(task)
 
@@ -250,7 +262,7 @@ class Engine:
         if options.time_budget is not None and clock - self.began > options.time_budget and not self.stopped:
             self.stopped = "budget"
         for task, at in self.running.items():
-            if self.leaving:
+            if self.stopped:
                 self.executor.cancel(task, "cancel")
             elif options.timeout is not None and clock - at.start > options.timeout and math.isnan(at.asked):
                 at.asked = clock

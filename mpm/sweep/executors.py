@@ -34,6 +34,7 @@ class Task:
     jobs: tuple[Job, ...]
     out: str
     batch: str = ""
+    checkpoint: float = 0.0  # seconds between checkpoints of a point that is alone; 0: none
 
     @property
     def id(self) -> str:
@@ -42,12 +43,12 @@ class Task:
 
     def message(self) -> dict:
         """As plain JSON."""
-        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "batch": self.batch}
+        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "batch": self.batch, "checkpoint": self.checkpoint}
 
     @classmethod
     def of(cls, message: dict) -> "Task":
         """From `message()`."""
-        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["batch"])
+        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["batch"], message["checkpoint"])
 
 
 @dataclass(frozen=True)
@@ -143,9 +144,10 @@ class Serial:
             self.heed(Beat(task.id, run_id, fraction, time))
             return self.stop
 
-        message = perform(task, self.runner, beat)
+        notes: list[Event] = []
+        message = perform(task, self.runner, beat, note=lambda text: notes.append(Note(text)))
         self.task = None
-        return [event(message)]
+        return [*notes, event(message)]
 
     def cancel(self, task: str, why: str) -> None:
         """Stop the running task at its next beat."""

@@ -121,7 +121,7 @@ class Processes:
         if kind == "warmed":
             child.state = "idle"
             return [Note(message["text"])] if message["text"] else []
-        if kind != "beat":
+        if kind not in ("beat", "note"):
             child.state, child.task = "idle", None
         return [event(message)]
 

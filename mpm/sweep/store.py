@@ -3,6 +3,7 @@
     OUT/experiment.json      what the folder holds: config, key of the base, swept paths
     OUT/points/ab/<id>.nc    one sealed file a finished point, ok or not (records.point); `.damaged` where the seal did not hold
     OUT/batches/0000/<number>-<pass>.nc   one sealed file for the points of a batch (records.batch), FOLDER numbers a folder
+    OUT/checkpoints/<id>.checkpoint   how far a point is that was stopped or killed (records.checkpoint); gone when it is done
     OUT/sweep.nc             the dataset (collect.py)
     A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
     OUT/lock                 held with flock by the process that writes: the kernel releases it when its owner dies
@@ -52,6 +53,15 @@ class Store:
             stem = name.removeprefix(BATCH)
             return self.out / "batches" / f"{int(stem.partition('-')[0]) // FOLDER:04d}" / f"{stem}.nc"
         return self.out / "points" / name[:2] / f"{name}.nc"
+
+    def checkpoint(self, run_id: str) -> Path:
+        """Where a point that is not done keeps how far it is."""
+        return self.out / "checkpoints" / f"{run_id}.checkpoint"
+
+    def forget(self, run_ids: Iterable[str]) -> None:
+        """Drop checkpoints, so that these points run from their start."""
+        for path in {path for path in (self.out / "checkpoints").glob("*.checkpoint") if path.stem in set(run_ids)}:
+            path.unlink(missing_ok=True)
 
     def own(self, run_ids: list[str]) -> set[str]:
         """Those of the points that have a file of their own."""
@@ -168,8 +178,7 @@ class Store:
     def set_aside(self, name: str) -> Path:
         """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""
         self.seen, self.batched, self.summaries = set(), {}, {}  # an earlier batch may hold some of its points
-        path = self.path(name)
-        return path.rename(path.with_suffix(".damaged"))
+        return self.path(name).rename(self.path(name).with_suffix(".damaged"))
 
     def experiment(self) -> dict | None:
         """What experiment.json says; None for a new folder."""

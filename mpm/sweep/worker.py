@@ -1,6 +1,6 @@
 """Worker: a process that lives through a sweep, runs one task at a time and puts its records on disk before it says so.
 
-Messages are JSON on one private socket. In: {do: warm|task|stop|quit}. Out: {is: ready|warmed|beat|done|unwritten}.
+Messages are JSON on one private socket. In: {do: warm|task|stop|quit}. Out: {is: ready|warmed|beat|note|done|unwritten}.
 A thread listens, so that the parent's end (EOF) ends the worker at once, whatever compiled code is running: no orphan outlives the parent.
 """
 
@@ -21,22 +21,32 @@ from mpm.sweep.executors import Task
 QUIET = 0.2  # least seconds between two beats told
 
 
-def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str], store: Any = None) -> dict:
+def perform(
+    task: Task, runner: str, stopped: Callable[[str, float, float], str], store: Any = None, note: Callable[[str], None] | None = None
+) -> dict:
     """Run a task, save its records in its folder or in `store`, and return the message that tells it.
 
     `stopped(run_id, fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).
+    A point that stops leaves a checkpoint; one that is done forgets it. `note` hears what went wrong with that.
     """
+    from mpm.records.checkpoint import Checkpoint
+    from mpm.records.variables import TIMEOUT
     from mpm.sweep.store import Store
 
-    records, left = results(task, runner, stopped)
+    keeper = None
+    if task.checkpoint > 0 and len(task.jobs) == 1:
+        keeper = Checkpoint(Store(task.out).checkpoint(task.id), task.id, task.checkpoint, note)
+    records, left = results(task, runner, stopped, keeper)
     try:
         (store or Store(task.out)).save_batch(records, task.batch)
     except OSError as error:
         return {"is": "unwritten", "task": task.id, "why": f"{error.filename}: {error.strerror}"}
+    if keeper is not None and any(record.status != TIMEOUT for record in records):
+        keeper.drop()
     return {"is": "done", "task": task.id, "lines": [record.line for record in records], "left": left}
 
 
-def results(task: Task, runner: str, stopped: Callable[[str, float, float], str]) -> tuple[list[Any], list[str]]:
+def results(task: Task, runner: str, stopped: Callable[[str, float, float], str], keeper: Any = None) -> tuple[list[Any], list[str]]:
     """The records of a task's points, and the points that were left when it was stopped."""
     from mpm.config import restore
 
@@ -52,7 +62,7 @@ def results(task: Task, runner: str, stopped: Callable[[str, float, float], str]
 
         if len(task.jobs) > 1 and beat(0.0, 0.0):
             return records, [other.run_id for other in task.jobs[place:]]
-        record = compute(job.run_id, lambda config=job.config: restore(config), runner, beat, attempts=job.attempt, config=job.config)
+        record = compute(job.run_id, lambda config=job.config: restore(config), runner, beat, keeper, attempts=job.attempt, config=job.config)
         if record.outcome == "budget" and (why == "cancel" or (why and len(task.jobs) > 1)):
             return records, [other.run_id for other in task.jobs[place:]]
         records.append(record)
@@ -79,7 +89,9 @@ def together(task: Task, runner: str) -> list[Any] | None:
     ]
 
 
-def compute(run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, **calls: Any) -> Any:
+def compute(
+    run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, keeper: Any = None, **calls: Any
+) -> Any:
     """The record of a point. Whatever the model raises is this point's failure, not the sweep's: status `failed`, with the place but no values."""
     from mpm.records import point, variables
     from mpm.records.provenance import now, source_hash
@@ -87,7 +99,7 @@ def compute(run_id: str, experiment: Callable[[], Any], runner: str, beat: Calla
     calls |= {"source": source_hash(), "started": now()}
     began = time.perf_counter()
     try:
-        return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat), **calls, finished=now())
+        return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat, keeper=keeper), **calls, finished=now())
     except Exception as error:
         text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
         return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
@@ -159,7 +171,11 @@ class Worker:
                     self.tell({"is": "warmed", "text": f"compiling ahead failed: {first_line(error)}{where(error)}"})
             else:
                 task = Task.of(order["task"])
-                self.tell(perform(task, self.runner, functools.partial(self.beat, task.id)))
+                self.tell(perform(task, self.runner, functools.partial(self.beat, task.id), note=self.note))
+
+    def note(self, text: str) -> None:
+        """Something to tell the user."""
+        self.tell({"is": "note", "text": text})
 
     def beat(self, task: str, run_id: str, fraction: float, when: float) -> str:
         """Tell progress now and then; return the reason to stop, if any."""

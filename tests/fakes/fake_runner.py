@@ -40,7 +40,7 @@ def estimate(experiment):
     }
 
 
-def run_point(experiment, beat=None):
+def run_point(experiment, beat=None, keeper=None):
     kappa = experiment.materials["m"].heat.kappa.value
     end, every = experiment.time.end, experiment.output.every
     mark(f"run {kappa}")
@@ -60,9 +60,15 @@ def run_point(experiment, beat=None):
     if kappa == DIVERGES:
         times, ending = times[: len(times) // 2], outcome(INVERTED, particle=812, time=0.0134, step=2680)
     if kappa == SLOW or kappa >= BRIEF:
-        for step in range(3000 if kappa == SLOW else 100):
+        found = keeper.found if keeper is not None else None
+        first = found["step"] if found else 0
+        mark(f"from {first}")
+        for step in range(first, 3000 if kappa == SLOW else 100):
             time.sleep(0.01)
-            if beat(step / 3000, step * 0.01):
+            stop = beat(step / 3000, step * 0.01)
+            if keeper is not None and keeper.due(stop):
+                keeper.save({"step": step + 1})
+            if stop:
                 times, ending = times[:3], Outcome("budget", f"stopped at t = {step * 0.01:.3g} s")
                 break
     elif beat is not None:

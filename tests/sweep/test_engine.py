@@ -135,7 +135,7 @@ def test_timeout_stops_gently_then_hard(config, tmp_path, kappa, error, monkeypa
 
 
 def test_time_budget_leaves_pending_points_and_goes_on(config, tmp_path):
-    first = go(config([0.2, fake.SLOW, 0.5]), tmp_path / "out", jobs=1, time_budget=1.5)
+    first = go(config([0.2, fake.SLOW, 0.5]), tmp_path / "out", jobs=1, time_budget=4)
     assert first.exit_code == 75 and first.counts["pending"] == 2 and first.counts["ok"] == 1
     assert tree_of(tmp_path / "out" / "sweep.nc").status.values.tolist() == [0, 6, 6]
 
@@ -248,12 +248,20 @@ def test_sigterm_to_the_whole_group_leaves_what_ran_pending(config, tmp_path, ma
     assert 3 not in status and 6 in status
 
 
-def test_ctrl_c_finishes_what_runs(config, tmp_path, marks):
-    process = start(config([fake.BRIEF, fake.BRIEF + 1e-9, fake.DIVERGES, 0.5]), tmp_path / "out", marks)
+def test_ctrl_c_leaves_checkpoints_and_the_same_command_goes_on_from_them(config, tmp_path, marks):
+    points, out = config([fake.BRIEF, fake.BRIEF + 1e-9, fake.DIVERGES, 0.5]), tmp_path / "out"
+    process = start(points, out, marks)
+    time.sleep(0.3)
+    began = time.monotonic()
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=20)
-    status = tree_of(tmp_path / "out" / "sweep.nc").status.values.tolist()
-    assert process.returncode == 130 and status[0] == 0 and 6 in status
+    assert process.returncode == 130 and time.monotonic() - began < 2
+    assert tree_of(out / "sweep.nc").status.values.tolist() == [6, 6, 6, 6] and len(list((out / "checkpoints").iterdir())) == 2
+    assert go(points, out, jobs=2).counts["ok"] == 3
+    begins = [int(row[1]) for row in marks() if row[0] == "from"]
+    assert begins[:2] == [0, 0] and min(begins[2:]) > 10 and list((out / "checkpoints").iterdir()) == []
+    go(config([fake.BRIEF, fake.BRIEF + 1e-9, fake.DIVERGES, 0.5]), tmp_path / "whole", jobs=2)
+    assert compare(tmp_path / "whole", out) == []
 
 
 def test_a_dataset_of_what_is_there_while_running(config, tmp_path, monkeypatch):

@@ -1,0 +1,69 @@
+"""R8: a run that was cut goes on with the same bits, whatever it is made of."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from restart import cut
+
+import mpm
+from mpm.sweep.cases import plan
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+HEAT = {"fourier": {"kappa": 0.4, "alpha": {"bump": {"base": 2000.0, "heat": 1e5, "at": 350.0, "width": 5.0}}}}
+LOOKS = {"every": 0.1, "probes": {"p": [0.7]}, "observables": ["time_to.p.395_K"]}
+FIELDS = {"every": 0.2, "grid": ["temperature"], "particles": ["position", "temperature"]}
+
+
+def slab(rigid, heat=None, **more):
+    data = {
+        "grid": {"dimension": 1, "size": [0.1], "cell": 2e-3},
+        "bodies": {
+            "one": {"shape": {"box": {"lower": [0.01], "upper": [0.04]}}, "material": "m", "temperature": 300},
+            "two": {"shape": {"box": {"lower": [0.06], "upper": [0.09]}}, "material": "m", "temperature": 320},
+        },
+        "materials": {"m": {"density": 1000, "heat": heat or {"fourier": {"kappa": 0.4, "alpha": 2000.0}}}},
+        "surfaces": [{"of": name, "convection": {"beta": 50.0, "outside": 400.0}} for name in ("one", "two")],
+        "time": {"end": 200.0},
+        "output": {"every": 20.0, "probes": {"p": [0.02], "q": [0.07]}, "observables": ["time_to.q.340_K"]},
+        "method": {"rigid": rigid},
+    }
+    return mpm.load(data | more)
+
+
+@pytest.mark.parametrize("transfer", ["apic", "flip blend"])
+def test_moving_bodies(core, transfer):
+    experiment = core.experiment(
+        1, {"beta": 5.0, "outside": 300.0}, output=LOOKS | {"snapshots": FIELDS}, method=core.methods(transfer) | {"heat": {"explicit": {}}}, time={"end": 1.0}
+    )
+    cuts, wrong = cut(experiment, 6, np.random.default_rng(1))
+    assert cuts == 6 and not wrong
+
+
+@pytest.mark.parametrize("rigid, heat", [({"implicit": {}}, None), ({"implicit": {}}, HEAT), ({"explicit": {}}, HEAT)], ids=["linear", "newton", "chebyshev"])
+def test_bodies_that_do_not_move(rigid, heat):
+    cuts, wrong = cut(slab(rigid, heat), 6, np.random.default_rng(2))
+    assert cuts == 6 and not wrong
+
+
+def test_material_points():
+    experiment = mpm.load(CONFIGS / "scenes" / "dough_rheometer.yaml", {}, smoke=True)
+    cuts, wrong = cut(plan(experiment).cases[0].experiment, 3, np.random.default_rng(3))
+    assert cuts == 3 and not wrong
+
+
+@pytest.mark.parametrize("field", ["time", "exchanged", "steps"])
+def test_a_memory_that_lost_something_is_seen(core, field, monkeypatch):
+    """The comparison is sharp: with one number of the memory wrong, the runs differ."""
+    from mpm.simulation import Clock
+
+    whole = Clock.recall
+
+    def lossy(clock, found):
+        whole(clock, found)
+        vars(clock)[field] = vars(clock)[field] * 0.75
+
+    monkeypatch.setattr(Clock, "recall", lossy)
+    experiment = core.experiment(1, {"beta": 5.0, "outside": 300.0}, output=LOOKS, method=core.methods("apic") | {"heat": {"explicit": {}}}, time={"end": 1.0})
+    _, wrong = cut(experiment, 3, np.random.default_rng(4))
+    assert wrong
