@@ -7,6 +7,7 @@ Offer     the smaller experiment, what was dropped, the error that its own estim
 offers.py     Offer, what a config asks for, how results go back
 physics.py    rigid (heat without motion), no flow, one way (no heating by deformation), no heat
 dimension.py  axisymmetric for a round body, fewer directions for a slab or a bar
+moving.py     the same for bodies that move
 lumped.py     one temperature (dimension 0)
 gap.py        how far two runs lie apart in what was asked for; pilots
 choose.py     which of them a tolerance allows; `model: auto`

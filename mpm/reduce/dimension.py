@@ -10,25 +10,14 @@ Fails     for bodies that are not centred on their axis, or turned boxes: then t
 import math
 from typing import Any
 
-from mpm.config.boundary import EXCHANGES
-from mpm.reduce.offers import Offer, asked, bare, loaded, only_body, refused
+from mpm.reduce.moving import prism, revolved
+from mpm.reduce.offers import Offer, asked, bare, entries, loaded, only_body, refused
 from mpm.scene.scales import Scales, scales
 
 SIDES = {1: (("left", "right"),), 2: (("left", "right"), ("bottom", "top")), 3: (("left", "right"), ("front", "back"), ("bottom", "top"))}
 ROUND = 0.2  # of a squared cell over the radius: by how much the two grids may differ
 THICK = 2  # cells of the slice that stands for a plane round body
 AXES = "xyz"
-
-
-def refused_motion(experiment: Any) -> str:
-    """Why a scene whose bodies move keeps its directions."""
-    return "the body moves" if experiment.moving else ""
-
-
-def entries(experiment: Any, name: str) -> list[dict]:
-    """Surface entries of a body as plain data without side and name."""
-    plain = [entry for entry in bare(experiment)["surfaces"] if entry["of"] == name]
-    return [{"of": name, "side": entry["side"], **{kind: entry[kind] for kind in EXCHANGES if entry[kind] is not None}} for entry in plain]
 
 
 def covered(side: str, dimension: int) -> set[str]:
@@ -40,8 +29,10 @@ def covered(side: str, dimension: int) -> set[str]:
 def fewer(experiment: Any, left: float) -> Offer | str:
     """A box, or a round body between its ends, along the directions in which heat enters."""
     want = asked(experiment)
-    if said := refused(experiment, want) or refused_motion(experiment):
+    if said := refused(experiment, want):
         return said
+    if experiment.moving:
+        return prism(experiment, SIDES)
     found = only_body(experiment)
     if found is None:
         return "there are several bodies"
@@ -131,8 +122,10 @@ def stack(experiment: Any, name: str, body: Any, one: Scales) -> Offer | str:
 
 def axisymmetric(experiment: Any, left: float) -> Offer | str:
     """A round body in the plane (r, z)."""
-    if said := refused(experiment, asked(experiment)) or refused_motion(experiment):
+    if said := refused(experiment, asked(experiment)):
         return said
+    if experiment.moving:
+        return revolved(experiment)
     found = only_body(experiment)
     if found is None:
         return "there are several bodies"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.config.boundary import EXCHANGES
 from mpm.scene.scales import Scales, scales, span
 
 EXTENSIVE = ("heat_total", "heat_exchanged", "heat_ledger", "mass_total", "volume_total", "energy_kinetic", "energy_elastic", "energy_total",
@@ -35,11 +36,8 @@ class Offer:
 
     def back(self, run: Any) -> Any:
         """The run under the names and in the sums of the larger model."""
-        series = {name: values for name, values in run.series.items() if name not in self.lost}
-        for name, values in series.items():
-            if name in EXTENSIVE or name.startswith("momentum_"):
-                series[name] = values * self.factor
-        series |= {name: made(run.series) for name, made in self.places.items()}
+        sums = {name: values * self.factor if name in EXTENSIVE or name.startswith("momentum_") else values for name, values in run.series.items()}
+        series = {name: values for name, values in sums.items() if name not in self.lost} | {name: made(sums) for name, made in self.places.items()}
         run.finals = {name: value for name, value in run.finals.items() if name not in run.series}
         run.series = series
         run.finals |= {name: float(values[-1]) for name, values in series.items()}
@@ -113,6 +111,12 @@ def only_body(experiment: Any) -> tuple[str, Any, Scales] | None:
         return None
     ((name, body),) = experiment.bodies.items()
     return name, body, scales(experiment)[name]
+
+
+def entries(experiment: Any, name: str) -> list[dict]:
+    """Surface entries of a body as plain data without side and name."""
+    plain = [entry for entry in bare(experiment)["surfaces"] if entry["of"] == name]
+    return [{"of": name, "side": entry["side"], **{kind: entry[kind] for kind in EXCHANGES if entry[kind] is not None}} for entry in plain]
 
 
 def driving(experiment: Any) -> float:
