@@ -86,6 +86,10 @@ def warm(experiment) -> None:
     """Compile (or load from the cache) what the experiment needs, by a run of one output interval of its smallest steps."""
     from mpm.config import load
 
+    if getattr(experiment.model, "kind", "full") == "auto":
+        from mpm.reduce.choose import likely
+
+        experiment = likely(experiment)
     short = experiment.resolved()
     if experiment.grid.dimension == 0:
         short["time"]["end"] = experiment.time.end * 1e-3

@@ -143,6 +143,12 @@ def smallest(experiment: Any, run: Callable) -> Any:
     return done
 
 
+def likely(experiment: Any) -> Any:
+    """The model that is tried first, as far as estimates alone tell: what to compile ahead."""
+    chain = next(candidates(experiment, experiment.model.tolerance, None, []))
+    return chain[-1].offer.experiment if chain else experiment.model_copy(update={"model": None})
+
+
 class Stopped(Exception):
     """The clock or the user ended a run on the way."""
 

@@ -36,7 +36,31 @@ def elastic(**material):
     return config
 
 
+def column():
+    """Two directions, one of them between slip walls: it swings under its weight."""
+    return {
+        "grid": {"dimension": 2, "size": [0.5, 1.5], "cell": 0.125},
+        "bodies": {"b": {"shape": {"box": {"lower": [0, 0], "upper": [0.5, 1.0]}}, "material": "m"}},
+        "materials": {"m": {"density": 1, "elastic": {"hencky": {"lam": 0.2, "mu": 0.4}}}},
+        "gravity": [0, -0.05],
+        "time": {"end": 2.0},
+        "output": {"every": 0.2, "observables": ["position.max_y", "energy.kinetic", "momentum.y"]},
+    }
+
+
+def ball():
+    """Three directions, a ball thrown at the floor."""
+    return {
+        "grid": {"dimension": 3, "size": [1.0, 1.0, 1.0], "cell": 0.0625},
+        "bodies": {"b": {"shape": {"ball": {"centre": [0.5, 0.5, 0.4], "radius": 0.25}}, "material": "m", "velocity": [0, 0, -2]}},
+        "materials": {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}},
+        "walls": {"bottom": "contact"},
+        "time": {"end": 0.02},
+        "output": {"every": 0.01, "observables": ["position.mean_z", "energy.kinetic"]},
+    }
+
+
 @pytest.fixture
 def scenes():
     """The functions above."""
-    return SimpleNamespace(box=box, gentle=gentle, elastic=elastic)
+    return SimpleNamespace(box=box, gentle=gentle, elastic=elastic, column=column, ball=ball)
