@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+BYTES = {"": 1.0} | {f"{letter}{i}": (1024.0 if i else 1000.0) ** (power + 1) for power, letter in enumerate("kMGT") for i in ("", "i")}
 UNITS = {"s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
 
 
@@ -15,6 +16,14 @@ def seconds(text: str) -> float:
     if match is None or float(match[1]) == 0:
         raise typer.BadParameter(f"{text!r} is not a duration; say 90, 90s, 5min or 2h")
     return float(match[1]) * UNITS[match[2] or "s"]
+
+
+def amount(text: str) -> float:
+    """`4GB`, `500 MB`, `2GiB`, `4e9` in bytes."""
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?(?:e\d+)?)\s*([kMGT]?i?)B?\s*", text)
+    if match is None or float(match[1]) == 0 or match[2] not in BYTES:
+        raise typer.BadParameter(f"{text!r} is not an amount of memory; say 4GB, 500MB or 2GiB")
+    return float(match[1]) * BYTES[match[2]]
 
 
 def workers(text: str) -> int:

@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, limit, load
+from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, say, warn
 
@@ -24,6 +24,7 @@ def route(text: str) -> str:
     return text
 
 
+MEMORY = "Most memory of a point, as 4GB: refused before it starts, ended while it runs.  [default: what is free]"
 SCHEDULER = "Run on a Dask cluster, as tcp://host:8786; local starts one on 127.0.0.1 with JOBS workers."
 RESULTS = "From a cluster: over the wire, or through OUT where all workers see it under the same path."
 AGAIN = "Run finished points again: those that are not ok; those that other source made; all."
@@ -43,6 +44,7 @@ def sweep(
     fail_fast: Annotated[bool, typer.Option("--fail-fast", help="Stop at the first point that is not ok.")] = False,
     max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
     max_runs: MaxRuns = 10_000,
+    memory: Annotated[float | None, typer.Option(metavar="SIZE", parser=amount, help=MEMORY, show_default=False)] = None,
     scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER, show_default=False)] = None,
     results: Annotated[str, typer.Option(metavar="wire|shared", parser=route, help=RESULTS)] = "wire",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
@@ -64,7 +66,7 @@ def sweep(
     from mpm.sweep.engine import Options
 
     experiment = load(config, set_, smoke)
-    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke, scheduler, results == "shared")
+    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke, scheduler, results == "shared", memory)
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
     picture = draw(result)
     if as_json:

@@ -5,10 +5,13 @@ import math
 from mpm.scene.inventory import output_bytes, physics
 
 NS_PARTICLE_STEP = {1: 60, 2: 200, "axisymmetric": 220, 3: 450}
-BYTES_PARTICLE = {1: 120, 2: 200, "axisymmetric": 200, 3: 320}
+BYTES_PARTICLE = {1: 200, 2: 350, "axisymmetric": 390, 3: 880}  # at the peak, which is where particles are cut and weighed
+BYTES_NODE = 80
+BYTES_PROCESS = {"point": 175_000_000, "moving": 186_000_000, "rigid": 200_000_000}  # interpreter, packages, kernels from the cache
 
 
 MOST_UNKNOWNS = 2_000_000
+LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
@@ -19,6 +22,54 @@ def estimate(experiment) -> dict:
 
         return point.estimate(experiment)
     return estimate_moving(experiment) if experiment.moving else estimate_rigid(experiment)
+
+
+def memory(experiment) -> int:
+    """Bytes of a process that runs the point, at its peak, kernels in the cache: within 20 % (tests/test_costs.py). Particles are counted, not made."""
+    particles = count_particles(experiment)
+    fields = 3 * output_bytes(experiment, particles)  # as they are collected, joined and packed
+    if experiment.grid.dimension == 0:
+        return BYTES_PROCESS["point"]
+    if not experiment.moving:
+        return estimate_rigid(experiment)["memory_bytes"] + fields
+    nodes = math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)
+    return BYTES_PROCESS["moving"] + particles * BYTES_PARTICLE[experiment.grid.dimension] + nodes * BYTES_NODE + fields
+
+
+def memory_at_most(experiment) -> int:
+    """A bound on `memory` from the domain alone, in microseconds: where it fits, nothing needs to be counted."""
+    grid = experiment.grid
+    if grid.dimension == 0:
+        return BYTES_PROCESS["point"]
+    cells = [math.ceil(size / grid.cell) + 5 for size in grid.size]
+    if experiment.moving:
+        count = math.prod(cells) * experiment.method.particles**grid.directions
+        body = BYTES_PROCESS["moving"] + len(experiment.bodies) * count * BYTES_PARTICLE[grid.dimension] + math.prod(cells) * BYTES_NODE
+    else:
+        count = math.prod(cells)
+        body = BYTES_PROCESS["rigid"] + 8 * count * (3 * count // max(cells) + 5**grid.directions * 6)  # matrices, and a band of the smaller sides
+    return body + 3 * output_bytes(experiment, count if experiment.moving else 0)
+
+
+def count_particles(experiment) -> int:
+    """Particles of all bodies, about: cells of the sampling whose centre lies in a body or within half a cell of it."""
+    import numpy as np
+
+    from mpm.scene.shapes import shape
+
+    if not experiment.moving:
+        return 0
+    edge, count = experiment.grid.cell / experiment.method.particles, 0.0
+    for body in experiment.bodies.values():
+        outline = shape(body.shape, experiment.grid.dimension)
+        lower, upper = outline.bounds()
+        lower = np.maximum(lower, 0.0)
+        sides = np.maximum(1, np.rint((upper - lower) / edge)).astype(int)
+        coarse = np.minimum(sides, round(LATTICE ** (1 / len(sides))))
+        places = np.meshgrid(*(low + (np.arange(n) + 0.5) * (high - low) / n for low, high, n in zip(lower, upper, coarse, strict=True)), indexing="ij")
+        inside = outline.distance(np.stack([axis.ravel() for axis in places], axis=1)) < edge / 2
+        count += float(np.mean(inside)) * math.prod(map(int, sides))
+    return round(count)
 
 
 def estimate_moving(experiment) -> dict:
@@ -42,7 +93,7 @@ def estimate_moving(experiment) -> dict:
         "unknowns": math.prod(extents(scene.space)),
         "steps": steps,
         "seconds": steps * particles * NS_PARTICLE_STEP[dimension] * 1e-9,
-        "memory_bytes": 150_000_000 + particles * BYTES_PARTICLE[dimension] + math.prod(extents(scene.space)) * 80,
+        "memory_bytes": memory(experiment),
         "output_bytes": output_bytes(experiment, particles),
         "limits": {name: limit * S for name, limit in (now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {})).items()},
         "binds": "heat pace" if pace < step else binds,
@@ -69,7 +120,7 @@ def estimate_rigid(experiment) -> dict:
         "unknowns": ahead["unknowns"],
         "steps": STEPS_RIGID,
         "seconds": 0.02 + ahead["seconds"],
-        "memory_bytes": 180_000_000 + ahead["memory_bytes"],
+        "memory_bytes": BYTES_PROCESS["rigid"] + ahead["memory_bytes"],
         "output_bytes": output_bytes(experiment, 0),
         "limits": ahead["limits"],
         "binds": "accuracy",

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
 STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
 OK, FAILED, TIMEOUT, KILLED, DIVERGED, SKIPPED, PENDING = range(7)
+MEMORY = "memory"  # the outcome of a point that wants more than there is
 AXES = ("x", "y", "z", "r")
 EXACT_FIELDS = (("displacement", "m"), ("velocity", "m/s"), ("stress", "Pa"))
 

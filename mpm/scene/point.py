@@ -205,7 +205,7 @@ def estimate(experiment) -> dict:
         "unknowns": 0,
         "steps": steps,
         "seconds": 1e-3 + steps * NS_STEP * 1e-9,
-        "memory_bytes": 150_000_000 + len(one.times) * 20 * 8,
+        "memory_bytes": 175_000_000 + len(one.times) * 20 * 8,
         "output_bytes": output_bytes(experiment, 0),
         "limits": found,
         "binds": "time.step" if one.step else "output" if step >= every else min(found, key=found.get),

@@ -4,7 +4,8 @@ cases      `plan`: axes, zips, samples and lists of points -> cases with an id t
 designs    Sobol, Latin hypercube, Halton and uniform samples
 api        what the shell and Python share: `execute`, `run_one`, `sweep`, `run`
 engine     hands out points, hears of them, retries, keeps the clock; knows no processes and no disk; `pace` sizes batches of tiny points
-executors  where points run: the interface, and `Serial`; `processes` has workers on this machine, `worker` is their other side; `cluster` has Dask's (`local`)
+executors  where points run: the interface, and `Serial`; `processes` has workers on this machine (`worker`), `cluster` has Dask's (`local`, `remote`)
+room       memory and disk that points may take; `tally`: which are missing, and how they are counted
 store      the folder of a sweep: points by id, what it holds, one writer; `collect` makes sweep.nc of it (`align`, `coordinates`)
 status, compare, outlook   what is there; same or not; what would be done
 

@@ -14,9 +14,10 @@ from typing import Any
 
 from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
-from mpm.sweep.engine import Engine, Options, Points, Result, counts, exit_code
+from mpm.sweep.engine import Engine, Options, Result
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Lock, Refused, Store
+from mpm.sweep.tally import Points, counts, exit_code
 
 QUICK = 200  # points that are collected even when told to leave at once
 
@@ -70,6 +71,8 @@ def execute(
         reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in supervisor.due), options.jobs)
         try:
             if supervisor.due:
+                if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due[0]].experiment):
+                    reporter.note(warning)
                 run_engine(supervisor, options)
         finally:
             reporter.close()
@@ -108,9 +111,10 @@ def run_engine(supervisor: Engine, options: Options) -> None:
         if options.scheduler:
             from mpm.sweep.cluster import Cluster
 
-            supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, supervisor.store.out.resolve(), options.jobs))
+            out, memory = supervisor.store.out.resolve(), supervisor.room.limit
+            supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, out, options.jobs, memory))
             return
-        supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first))
+        supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.room.limit))
 
 
 @contextlib.contextmanager
@@ -190,7 +194,7 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
 
     out    folder; `results/<config name>` unless given
     jobs   worker processes; "auto" is one a core; 0 runs the points in this process
-    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared, checkpoint
+    more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared, checkpoint, memory
     Ctrl-C leaves checkpoints of what runs, collects, and raises KeyboardInterrupt; the same call again goes on from them.
     """
     options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)

@@ -13,6 +13,7 @@ import contextlib
 import functools
 import json
 import logging
+import math
 import queue
 import secrets
 import time
@@ -22,71 +23,19 @@ from typing import Any
 from mpm.records.provenance import source_hash
 from mpm.sweep.executors import Beat, BrokenWorkers, Done, Event, Lost, Note, Task, Unwritten, event
 from mpm.sweep.local import Local
+from mpm.sweep.remote import prepare, stop, work
+from mpm.sweep.room import resident, size
 from mpm.sweep.store import Refused, Store
 
 LOOK = 1.0  # s between two looks at which workers there are
 PATIENCE = 600.0  # s without a scheduler before the sweep gives up; also without a single worker
-QUIET = 1.0  # least seconds between two beats told
 ANSWER = 5.0  # s that the scheduler has to answer
-
-stops: dict[str, str] = {}  # in a worker: task -> why it is to stop
-
-
-class Parcel(Store):
-    """A store that keeps its files in memory, by their path under the sweep's folder: what a worker sends over the wire."""
-
-    def __init__(self) -> None:
-        super().__init__(Path())
-        self.files: dict[str, bytes] = {}
-
-    def put(self, path: Path, data: bytes) -> None:
-        """A file of the parcel."""
-        self.files[str(path)] = data
-
-
-def prepare(runner: str, config: str) -> tuple[str, int]:
-    """On a worker: compile (or load) what the sweep needs; the hash of the worker's source, and its process."""
-    import importlib
-    import os
-
-    from mpm.config import restore
-
-    if config:
-        importlib.import_module(runner).warm(restore(json.loads(config)))
-    return source_hash(), os.getpid()
-
-
-def work(text: str, runner: str, topic: str, shared: bool) -> tuple[dict, dict[str, bytes]]:
-    """On a worker: run a task; its message, and its files where they go over the wire."""
-    from distributed import get_worker
-
-    from mpm.sweep.worker import perform
-
-    task, worker, told = Task.of(json.loads(text)), get_worker(), 0.0
-
-    def stopped(run_id: str, fraction: float, when: float) -> str:
-        nonlocal told
-        if time.monotonic() - told > QUIET:
-            told = time.monotonic()
-            worker.log_event(topic, {"is": "beat", "task": task.id, "run_id": run_id, "fraction": float(fraction), "time": float(when)})
-        return stops.get(task.id, "")
-
-    parcel = None if shared else Parcel()
-    try:
-        return perform(task, runner, stopped, parcel), parcel.files if parcel else {}
-    finally:
-        stops.pop(task.id, None)
-
-
-def stop(task: str, why: str) -> None:
-    """On a worker, beside the task: ask it to stop at its next beat."""
-    stops[task] = why
 
 
 class Cluster:
     """An Executor over a Dask cluster. `warm` is the config (plain JSON) to compile for; `shared` as above; `jobs` workers where it is `local`."""
 
-    def __init__(self, address: str, runner: str, warm: dict | None, shared: bool, out: Path, jobs: int = 1):
+    def __init__(self, address: str, runner: str, warm: dict | None, shared: bool, out: Path, jobs: int = 1, memory: float = math.inf):
         self.distributed = loaded()
         self.runner, self.warm, self.shared, self.out = runner, json.dumps(warm) if warm else "", shared, out
         self.wanted = jobs
@@ -97,6 +46,8 @@ class Cluster:
         self.refused: dict[str, str] = {}
         self.flights: dict[str, tuple[str, Any, Task]] = {}  # task -> worker, future, the task itself
         self.killed: dict[str, str] = {}  # task -> why
+        self.memory = memory  # most bytes of a worker, where it is `local`
+        self.heavy: set[str] = set()  # tasks that took more
         self.looked = 0.0
         self.alive = time.monotonic()  # when there was a worker last, or hope of one
         self.pids: dict[str, int] = {}
@@ -137,8 +88,10 @@ class Cluster:
     def poll(self, timeout: float) -> list[Event]:
         """Wait for news of any task; now and then look which workers there are."""
         events: list[Event] = []
-        if self.local and self.local.grow(self.wanted):
-            self.looked = 0.0
+        if self.local:
+            self.weigh()
+            if self.local.grow(self.wanted):
+                self.looked = 0.0
         if time.monotonic() - self.looked > LOOK:
             events += self.look()
         with contextlib.suppress(queue.Empty):
@@ -177,7 +130,16 @@ class Cluster:
         _, future, _ = self.flights.pop(name)
         with contextlib.suppress(Exception):
             future.cancel()
-        return Lost(name, self.killed.pop(name, "") or why)
+        heavy = name in self.heavy
+        self.heavy.discard(name)
+        return Lost(name, self.killed.pop(name, "") or why, heavy)
+
+    def weigh(self) -> None:
+        """End local workers that take more memory than a point may."""
+        for name, (worker, _, _) in self.flights.items():
+            if name not in self.heavy and (taken := resident(self.pids[worker])) > self.memory:
+                self.heavy.add(name)
+                self.kill(name, f"took {size(taken)} of memory, and {size(self.memory)} are allowed")
 
     def look(self) -> list[Event]:
         """Which workers there are: new ones are prepared, the tasks of those that are gone are lost."""

@@ -18,11 +18,13 @@ from typing import Any
 
 from mpm.records.checkpoint import EVERY
 from mpm.records.provenance import now, source_hash
-from mpm.records.variables import FAILED, KILLED, OK, STATUS, TIMEOUT
+from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
 from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
 from mpm.sweep.pace import Pace
 from mpm.sweep.report import Reporter, label
+from mpm.sweep.room import ADVICE, Room
 from mpm.sweep.store import Store
+from mpm.sweep.tally import Points, missing
 
 POLL = 0.2  # s
 COLLECT = 30.0  # least seconds between two datasets while running; 20 times the cost of one, if that is more
@@ -30,7 +32,6 @@ LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stoppe
 GRACE = 2.0  # s that a point over its time has to stop by itself
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
 RUNNER = "mpm.runner"  # the module that computes: run_point, warm, estimate
-EXIT = {"interrupted": 130, "terminated": 143, "budget": 75}
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Options:
     retries    for killed and timed-out points only, as a model's own failure repeats; None: 3 for killed, 0 for timed out
     rerun      None (only what has no record), "failed" (and what is not ok), "stale" (and what other source made), "all"
     scheduler  a Dask scheduler's address, or "local" for one of this machine with `jobs` workers; None: processes of our own
+    memory     most bytes a point may take; None: what is free
     shared     its workers write into the sweep's folder, which all of them see; otherwise records come over the wire
     checkpoint seconds between two checkpoints of a running point; 0: none
     """
@@ -54,6 +56,7 @@ class Options:
     scheduler: str | None = None
     shared: bool = False
     checkpoint: float = EVERY
+    memory: float | None = None
     runner: str = field(default_factory=lambda: RUNNER)
 
 
@@ -70,35 +73,6 @@ class Result:
     seconds: float
     collected: bool = False
     hurried: bool = False  # told to leave at once
-
-
-@dataclass
-class Points:
-    """The points of a plan by run id: equal points are one."""
-
-    cases: dict[str, Any]
-    total: int
-    counts: Counter = field(default_factory=Counter)
-
-    @classmethod
-    def of(cls, plan: Any) -> "Points":
-        cases: dict[str, Any] = {}
-        for case in plan.cases:
-            cases.setdefault(case.run_id, case)
-        return cls(cases, len(plan.cases), Counter(case.run_id for case in plan.cases))
-
-
-def missing(points: Points, lines: dict[str, dict], rerun: str | None) -> list[str]:
-    """Run ids that are to run, in the plan's order."""
-    source = source_hash() if rerun == "stale" else ""
-
-    def due(run_id: str) -> bool:
-        line = lines.get(run_id)
-        if line is None or rerun == "all":
-            return True
-        return (rerun == "failed" and line["status"] != OK) or (rerun == "stale" and line["source"] != source)
-
-    return [run_id for run_id in points.cases if due(run_id)]
 
 
 @dataclass
@@ -130,6 +104,7 @@ class Engine:
         self.began = self.collected = time.monotonic()
         self.cost = 0.0
         self.executor: Executor | None = None
+        self.room = Room(store.out, options.memory, far=options.scheduler not in (None, "local"))
 
     def signal(self, kind: str) -> None:
         """A signal came: "interrupted" or "terminated". Safe to call from a handler."""
@@ -142,8 +117,8 @@ class Engine:
         try:
             while (self.due and not self.stopped) or self.running:
                 executor.wanted = len(self.running) + (0 if self.stopped else len(self.due))
-                while executor.free and self.due and not self.stopped:
-                    self.hand_out(executor)
+                while executor.free and self.due and not self.stopped and self.hand_out(executor):
+                    pass
                 if self.stopped and self.left(executor):
                     break
                 for event in executor.poll(POLL):
@@ -163,12 +138,20 @@ class Engine:
                 executor.cancel(task, "cancel")
         return self.signals > 1 or time.monotonic() - self.asked > LEAVE
 
-    def hand_out(self, executor: Executor) -> None:
-        """Start the next point, or the next few where they are tiny."""
-        run_ids = [self.due.popleft()]
-        size = 1 if run_ids[0] in self.alone else self.pace.batch(len(self.due) + 1, len(self.running) + executor.free)
+    def hand_out(self, executor: Executor) -> bool:
+        """Start the next point, or the next few where they are tiny. False where it has to wait for those that run."""
+        size = 1 if self.due[0] in self.alone else self.pace.batch(len(self.due), len(self.running) + executor.free)
         if self.options.max_failures is not None:
             size = min(size, self.options.max_failures - self.failures)  # none runs after the last failure that is allowed
+        first = self.points.cases[self.due[0]].experiment
+        need = self.room.need(first)  # of a batch, the first speaks for all: they are tiny
+        if refusal := self.room.refusal(need):
+            self.attempts[self.due[0]] += 1
+            self.record(self.due.popleft(), FAILED, refusal, MEMORY, ADVICE)
+            return True
+        if not self.room.fits(need) or not self.on_disk(size, first):
+            return False
+        run_ids = [self.due.popleft()]
         while len(run_ids) < size and self.due and self.due[0] not in self.alone:
             run_ids.append(self.due.popleft())
         self.attempts.update(run_ids)
@@ -176,7 +159,21 @@ class Engine:
         seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
         task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "", seen)
         self.running[task.id] = Running(task, time.monotonic())
+        self.room.given[task.id] = need
         executor.submit(task)
+        return True
+
+    def on_disk(self, size: int, experiment: Any) -> bool:
+        """Whether the disk has room for so many points more; where nothing runs that could end, the sweep stops."""
+        why = self.room.short(size + sum(len(at.task.jobs) for at in self.running.values()), experiment)
+        if why and not self.running:
+            self.stop_for_the_disk(why)
+        return not why
+
+    def stop_for_the_disk(self, why: str) -> None:
+        """No more can be written."""
+        self.stopped = self.stopped or "broken"
+        self.broken = f"{why}; finished points are kept, run the same command again when there is room"
 
     def hear(self, event: Event) -> None:
         """One event of the executor."""
@@ -186,13 +183,14 @@ class Engine:
             self.reporter.note(event.text)
         elif (gone := self.running.pop(event.task, None)) is None:
             return  # told twice, as a cluster may
-        elif isinstance(event, Done):
-            self.done(gone, event)
-        elif isinstance(event, Lost):
-            self.lost(gone, event.why)
         else:
-            self.stopped = self.stopped or "broken"
-            self.broken = f"{event.why}; finished points are kept, run the same command again when there is room"
+            self.room.given.pop(event.task, None)
+            if isinstance(event, Done):
+                self.done(gone, event)
+            elif isinstance(event, Lost):
+                self.lost(gone, event)
+            else:
+                self.stop_for_the_disk(event.why)
 
     def heed(self, beat: Beat) -> None:
         """A task is alive. (`Serial` calls this from inside the point, so it must also keep the clock.)"""
@@ -226,20 +224,26 @@ class Engine:
             self.finish(line)
         return [run_id for run_id in run_ids if run_id not in fresh]
 
-    def lost(self, gone: Running, why: str) -> None:
+    def lost(self, gone: Running, event: Lost) -> None:
         """The worker died under a task: the engine writes the record of a point that was alone, unless the worker still had."""
-        from mpm.records.point import Record
-
-        asked = not math.isnan(gone.asked)
-        status, why = (TIMEOUT, f"no answer after {self.options.timeout:g} s") if asked else (KILLED, why)
         missed = self.news(gone.task)
         if len(gone.task.jobs) > 1:
             self.again(missed)
             return
         for run_id in missed:
-            record = Record(run_id, status, f"{STATUS[status]}: {why}", attempts=self.attempts[run_id], source=source_hash(), finished=now())
-            self.store.save(record)
-            self.finish(record.line)
+            if math.isnan(gone.asked):
+                self.record(run_id, KILLED, event.why, MEMORY if event.memory else "")
+            else:
+                self.record(run_id, TIMEOUT, f"no answer after {self.options.timeout:g} s")
+
+    def record(self, run_id: str, status: int, why: str, outcome: str = "", advice: str = "") -> None:
+        """The record of a point that no worker could write."""
+        from mpm.records.point import Record
+
+        calls = {"attempts": self.attempts[run_id], "source": source_hash(), "finished": now()}
+        record = Record(run_id, status, f"{STATUS[status]}: {why}", outcome, advice, **calls)
+        self.store.save(record)
+        self.finish(record.line)
 
     def finish(self, line: dict) -> None:
         """A record is on disk: count it, or try the point again."""
@@ -247,7 +251,7 @@ class Engine:
         self.lines[run_id] = line
         self.ran += 1
         retries = self.options.retries if self.options.retries is not None else {KILLED: KILLED_AGAIN}.get(status, 0)
-        again = status in (KILLED, TIMEOUT) and self.attempts[run_id] <= retries and not self.stopped
+        again = status in (KILLED, TIMEOUT) and line["outcome"] != MEMORY and self.attempts[run_id] <= retries and not self.stopped
         if again:
             self.alone.add(run_id)
             self.due.append(run_id)
@@ -275,22 +279,3 @@ class Engine:
             self.partial()
             self.collected = time.monotonic()
             self.cost = self.collected - clock
-
-
-def counts(points: Points, lines: dict[str, dict], skipped: int) -> dict[str, int]:
-    """Points by status; equal points count each."""
-    found = Counter({name: 0 for name in STATUS})
-    for run_id, times in points.counts.items():
-        found[STATUS[lines[run_id]["status"]] if run_id in lines else "pending"] += times
-    found["skipped"] += skipped
-    return dict(found)
-
-
-def exit_code(found: dict[str, int], stopped: str) -> int:
-    """interface.md section 2."""
-    if stopped in EXIT:
-        return EXIT[stopped]
-    bad = sum(found[STATUS[status]] for status in (FAILED, TIMEOUT, KILLED)) + found["diverged"]
-    if stopped == "broken":
-        return 1
-    return 0 if not bad else 4 if not found["ok"] and not found["pending"] else 3

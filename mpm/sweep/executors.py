@@ -72,10 +72,11 @@ class Done:
 
 @dataclass(frozen=True)
 class Lost:
-    """The worker died with this task."""
+    """The worker died with this task; `memory`: it was ended as it took too much, and would again."""
 
     task: str
     why: str
+    memory: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from typing import Any
 
 from mpm.sweep import engine
 from mpm.sweep.api import default_out, skipped
-from mpm.sweep.engine import Points, missing
+from mpm.sweep.room import size
 from mpm.sweep.store import Store
+from mpm.sweep.tally import Points, missing
 
 
 def outlook(
@@ -115,12 +116,3 @@ def said_value(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name} {short(inner)}" for name, inner in value.items())
     return short(value)
-
-
-def size(count: float) -> str:
-    """Bytes for people."""
-    for unit in ("B", "kB", "MB", "GB"):
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} TB"

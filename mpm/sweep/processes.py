@@ -6,6 +6,7 @@ is replaced, and only its point is lost. What workers print goes to an unnamed f
 """
 
 import json
+import math
 import os
 import re
 import signal
@@ -17,9 +18,11 @@ from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
 from mpm.sweep.executors import BrokenWorkers, Event, Lost, Note, Task, event
+from mpm.sweep.room import resident, size
 
 ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")}
 START_FAILURES = 3
+WEIGH = 0.2  # s between two looks at the workers' memory
 # with the parent's module path, so that a worker imports the same files whatever the current folder holds
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep.worker import main; main()"
 
@@ -27,17 +30,18 @@ START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep
 class Child:
     """The parent's side of one worker."""
 
-    def __init__(self, runner: str):
+    def __init__(self, runner: str, memory: float):
         self.pipe, theirs = Pipe(duplex=True)
         self.log = tempfile.TemporaryFile(mode="ab+")
-        command = [sys.executable, "-P", "-c", START, str(theirs.fileno()), runner, json.dumps(sys.path)]
+        command = [sys.executable, "-P", "-c", START, str(theirs.fileno()), runner, json.dumps(sys.path), str(memory)]
         self.process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log, pass_fds=[theirs.fileno()], env={**os.environ, **ONE_THREAD}
         )
         theirs.close()
         self.state = "starting"  # then idle, warming, busy
         self.task: Task | None = None
-        self.why = ""  # it was killed
+        self.why = ""  # it was killed for
+        self.heavy = False  # it was killed as it took too much memory
 
     def order(self, message: dict) -> None:
         """Send an order; a worker that is gone is noticed in `poll`."""
@@ -64,13 +68,18 @@ class Child:
 
 
 class Processes:
-    """An Executor over `jobs` processes. `warm` is the config (plain JSON) that the first worker compiles for; None to skip it."""
+    """An Executor over `jobs` processes. `warm` is the config (plain JSON) that the first worker compiles for; None to skip it.
 
-    def __init__(self, jobs: int, runner: str, warm: dict | None):
+    memory   most bytes of a worker: one that takes more is ended
+    """
+
+    def __init__(self, jobs: int, runner: str, warm: dict | None, memory: float = math.inf):
         self.jobs = jobs
         self.wanted = jobs
         self.runner = runner
         self.warm = warm
+        self.memory = memory
+        self.weighed = 0.0
         self.failed_starts = 0
         self.children: dict[Connection, Child] = {}
         self.grow()
@@ -78,7 +87,7 @@ class Processes:
     def grow(self) -> None:
         """Start workers up to the number worth having."""
         while len(self.children) < min(self.jobs, self.wanted):
-            child = Child(self.runner)
+            child = Child(self.runner, self.memory)
             self.children[child.pipe] = child
 
     @property
@@ -97,6 +106,7 @@ class Processes:
     def poll(self, timeout: float) -> list[Event]:
         """Wait for news from any worker."""
         self.grow()
+        self.weigh()
         events: list[Event] = []
         for pipe in wait(list(self.children), timeout):
             child = self.children[pipe]
@@ -106,6 +116,16 @@ class Processes:
             except (EOFError, OSError):
                 events += self.bury(child)
         return events
+
+    def weigh(self) -> None:
+        """End workers that take more memory than a point may."""
+        if math.isinf(self.memory) or time.monotonic() - self.weighed < WEIGH:
+            return
+        self.weighed = time.monotonic()
+        for child in self.children.values():
+            if child.state == "busy" and not child.heavy and (taken := resident(child.process.pid)) > self.memory:
+                child.why, child.heavy = f"took {size(taken)} of memory, and {size(self.memory)} are allowed", True
+                child.process.kill()
 
     def hear(self, child: Child, message: dict[str, Any]) -> list[Event]:
         """One message of a worker."""
@@ -137,7 +157,7 @@ class Processes:
                 raise BrokenWorkers(f"{START_FAILURES} workers in a row ended before they were ready; the last: {words}")
         if child.state == "warming":
             return [Note(f"compiling ahead failed: {words}")]
-        return [Lost(child.task.id, child.why or words)] if child.task else []
+        return [Lost(child.task.id, child.why or words, child.heavy)] if child.task else []
 
     def cancel(self, task: str, why: str) -> None:
         """Ask the worker to stop at its next beat."""

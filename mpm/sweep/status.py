@@ -8,9 +8,9 @@ from typing import Any
 from mpm.records.provenance import source_hash
 from mpm.records.variables import OK, STATUS
 from mpm.sweep.api import folder_plan, skipped
-from mpm.sweep.engine import Points, counts
 from mpm.sweep.report import label
 from mpm.sweep.store import owner, said_owner
+from mpm.sweep.tally import Points, counts
 
 SLOWEST = 5
 

@@ -7,6 +7,7 @@ A thread listens, so that the parent's end (EOF) ends the worker at once, whatev
 import functools
 import importlib
 import json
+import math
 import os
 import queue
 import signal
@@ -19,6 +20,7 @@ from typing import Any
 from mpm.sweep.executors import Task
 
 QUIET = 0.2  # least seconds between two beats told
+FENCE = 300_000_000  # bytes that a process reserves without using them
 
 
 def perform(
@@ -100,6 +102,9 @@ def compute(
     began = time.perf_counter()
     try:
         return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat, keeper=keeper), **calls, finished=now())
+    except MemoryError:
+        text = f"{variables.STATUS[variables.KILLED]}: wants more memory than is allowed or free"
+        return point.Record(run_id, variables.KILLED, text, variables.MEMORY, wall_time=time.perf_counter() - began, finished=now(), **calls)
     except Exception as error:
         text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
         return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
@@ -185,10 +190,21 @@ class Worker:
         return self.stop
 
 
+def fence(memory: float) -> None:
+    """Let an allocation far over the limit fail at once; what creeps over it is ended by the parent."""
+    import resource
+
+    if math.isfinite(memory):
+        most = int(1.2 * memory) + FENCE
+        hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+        resource.setrlimit(resource.RLIMIT_DATA, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+
 def main() -> None:
-    """Started by `processes.Child` with the socket's descriptor and the runner's name as arguments."""
+    """Started by `processes.Child` with the socket's descriptor, the runner's name, the module path and the memory limit as arguments."""
     for number in (signal.SIGINT, signal.SIGTERM):  # they reach the whole group; what to do about them is the parent's choice
         signal.signal(number, signal.SIG_IGN)
+    fence(float(sys.argv[4]))
     worker = Worker(int(sys.argv[1]), sys.argv[2])
     worker.live()
     os._exit(0)  # the listener sits in a read; nothing here is left to tidy

@@ -13,6 +13,7 @@ from mpm.state import Run
 
 NEEDS = ()  # no numba: these tests start many workers
 RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS, BRIEF = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0
+GROWS, GRABS = 11.0, 12.0
 
 
 def mark(text):
@@ -54,6 +55,13 @@ def run_point(experiment, beat=None, keeper=None):
     if kappa == EXITS:
         print("out of tea", file=sys.stderr, flush=True)
         os._exit(5)
+    if kappa == GROWS:
+        kept = []
+        while len(kept) < 100:
+            kept.append(np.ones(2_000_000))
+            time.sleep(0.05)
+    if kappa == GRABS:
+        np.ones(1_000_000_000)
     if kappa == HANGS:
         time.sleep(60)
     ending = Outcome("completed")

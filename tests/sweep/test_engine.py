@@ -76,7 +76,7 @@ def test_an_edited_parameter_is_refused_by_key_and_runs_when_told(config, tmp_pa
 def test_other_source_is_stale(config, tmp_path, monkeypatch):
     go(config([0.2, 0.5]), tmp_path / "out")
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 0
-    monkeypatch.setattr("mpm.sweep.engine.source_hash", lambda: "other")
+    monkeypatch.setattr("mpm.sweep.tally.source_hash", lambda: "other")
     assert go(config([0.2, 0.5]), tmp_path / "out").ran == 0
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 2
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="all").ran == 2

@@ -1,0 +1,138 @@
+import json
+import os
+import subprocess
+import sys
+from collections import namedtuple
+from pathlib import Path
+
+import fake_runner as fake
+import pytest
+
+from mpm.config import load
+from mpm.costs import count_particles, memory, memory_at_most
+from mpm.sweep import room
+from mpm.sweep.api import execute, tree_of
+from mpm.sweep.engine import Options
+from mpm.sweep.room import Room, available, resident
+
+ROOT = Path(__file__).parents[2]
+CUBE = {
+    "grid": {"dimension": 3, "size": [0.1, 0.1, 0.1], "cell": 0.01},
+    "bodies": {"ball": {"shape": {"ball": {"centre": [0.05, 0.05, 0.05], "radius": 0.03}}, "material": "m", "temperature": 300}},
+    "materials": {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}},
+    "time": {"end": 1e-4},
+}
+
+
+def go(config, out, jobs=0, reporter=None, **more):
+    return execute(load(config), out, Options(jobs=jobs, runner="fake_runner", **more), reporter)
+
+
+def test_what_needs_more_than_is_allowed_is_refused_with_its_estimate_and_runs_when_allowed(config, tmp_path, marks):
+    material = {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}
+    points = config([0.2, 0.5]) | {"materials": {"m": material}, "sweep": {"axes": {"cell": [1e-3, 1e-8]}}}
+    result = go(points, tmp_path, memory=1e9)
+    found = tree_of(tmp_path / "sweep.nc")
+    assert found.status.values.tolist() == [0, 1] and result.exit_code == 3 and len(marks()) == 1
+    assert "failed: needs about" in found.error.values[1] and "and 1 GB are allowed (--memory)" in found.error.values[1]
+    assert "--rerun failed" in result.lines[found.run_id.values[1]]["advice"]
+    assert go(points, tmp_path, memory=1e9).ran == 0
+
+
+def test_a_worker_that_takes_more_is_ended_and_not_tried_again(config, tmp_path, marks):
+    result = go(config([fake.GROWS, 0.2]), tmp_path, jobs=1, memory=4e8)
+    found = tree_of(tmp_path / "sweep.nc")
+    assert found.status.values.tolist() == [3, 0] and found.attempts.values.tolist() == [1, 1] and result.exit_code == 3
+    assert "of memory, and 400 MB are allowed" in found.error.values[0]
+
+
+def test_an_allocation_far_over_the_limit_fails_at_once(config, tmp_path, marks):
+    go(config([fake.GRABS, 0.2]), tmp_path, jobs=1, memory=4e8)
+    found = tree_of(tmp_path / "sweep.nc")
+    assert found.status.values.tolist() == [3, 0] and found.error.values[0] == "killed: wants more memory than is allowed or free"
+
+
+def test_points_wait_for_memory_that_others_have(tmp_path):
+    there = Room(tmp_path, None, far=False)
+    there.free = there.limit = 10.0
+    assert there.fits(11) and there.refusal(11) and not there.refusal(10)
+    there.given["a"] = 6
+    assert there.fits(4) and not there.fits(5)
+
+
+def test_a_full_disk_stops_before_it_is_full_and_goes_on(config, tmp_path, marks, monkeypatch):
+    state, told = {"free": 10**9}, []
+    Disk = namedtuple("Disk", "f_bavail f_frsize")
+    monkeypatch.setattr(room.os, "statvfs", lambda folder: Disk(state["free"], 1))
+
+    class Fills(fake_reporter()):
+        def finished(self, label, line, again):
+            state["free"] = 1000
+
+        def note(self, text):
+            told.append(text)
+
+    points = config([0.2, 0.5, 1.0])
+    result = go(points, tmp_path, reporter=Fills())
+    assert result.exit_code == 1 and result.ran == 1 and f"{tmp_path}: " in result.stopped and "1000 bytes are free" in result.stopped and told
+    state["free"] = 10**9
+    assert go(points, tmp_path).exit_code == 0 and len(marks()) == 3
+
+
+def fake_reporter():
+    from mpm.sweep.report import Reporter
+
+    return Reporter
+
+
+def test_a_sweep_that_may_not_fit_is_warned_of(config, tmp_path, monkeypatch):
+    there = Room(tmp_path, None, far=False)
+    assert there.warning(10, load(config([0.2]))) == ""
+    assert "may need up to" in there.warning(10**12, load(config([0.2]))) and "goes on where it was" in there.warning(10**12, load(config([0.2])))
+
+
+def test_memory_of_this_machine_and_process():
+    assert 1e8 < available() < 1e14 and 1e7 < resident(os.getpid()) < 1e11 and resident(2**22 - 1) == 0
+
+
+@pytest.mark.parametrize("shape, volume", [({"box": {"lower": [0.02] * 3, "upper": [0.08] * 3}}, 0.06**3), (None, 4 / 3 * 3.14159 * 0.03**3)])
+def test_particles_are_counted_about(shape, volume):
+    config = CUBE if shape is None else CUBE | {"bodies": {"ball": CUBE["bodies"]["ball"] | {"shape": shape}}}
+    for cell in (0.01, 0.0025):
+        experiment = load(config, {"grid.cell": cell})
+        count = count_particles(experiment)
+        rim = 0.0 if shape else 60 * cell / 2  # cells that a ball's surface cuts
+        assert volume * (1 - 1e-9) <= count * (cell / 2) ** 3 <= volume * (1 + 1e-9 + rim)
+        assert memory(experiment) <= memory_at_most(experiment)
+
+
+PEAK = """
+import json, sys
+sys.path.insert(0, sys.argv[2])
+import mpm.runner as runner, h5py
+from mpm.config import load
+from mpm.costs import memory
+from mpm.records import point
+cold, config = json.loads(sys.argv[1])
+if cold: runner.run_point(load(config)); sys.exit()
+experiment = load(config)
+record = point.from_run("a", runner.run_point(experiment), config=experiment.resolved())
+point.pack(record)
+peak = next(int(line.split()[1]) * 1024 for line in open("/proc/self/status") if line.startswith("VmHWM"))
+print(memory(experiment) / peak)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name, settings", [
+    ("scenes/cube.yaml", {"grid.cell": 0.0125}), ("scenes/slump.yaml", {}), ("scenes/slump.yaml", {"grid.cell": 5e-4}),
+    ("scenes/loaf.yaml", {}), ("scenes/loaf.yaml", {"grid.cell": 2e-4}), ("scenes/dough_rheometer.yaml", {}),
+])  # fmt: skip
+def test_the_estimate_is_within_a_fifth_of_the_peak(name, settings):
+    experiment = load(ROOT / "configs" / name, settings)
+    short = experiment.resolved() | {"sweep": None, "smoke": None}
+    short["time"]["end"] *= 1e-3 if experiment.moving else 1.0
+    short["output"]["every"] = short["time"]["end"]
+    for cold in (True, False):
+        found = subprocess.run([sys.executable, "-c", PEAK, json.dumps([cold, short]), str(ROOT)], capture_output=True, text=True, check=True)
+    assert 0.8 < float(found.stdout) < 1.2
