@@ -1,0 +1,190 @@
+"""Guards of a run: planted blow-ups are found at once and named, what is sound is left alone, advice is from the step that was taken, and it costs little."""
+
+import time
+
+import numpy as np
+import pytest
+
+import mpm.simulation as simulation
+from mpm.guards import Guards, holes
+
+DT = 0.01
+FIELDS = {"temperature": "theta", "gradient of temperature": "c", "J": "J", "strain": "B", "affine velocity": "C", "velocity": "v", "position": "x"}
+PLANTS = ("not finite", "inverted strain", "inverted volume", "negative temperature", "thrown out", "off the grid")
+KINDS = dict(zip(PLANTS, ("non_finite", "inverted", "inverted", "max_principle", "left_grid", "left_grid"), strict=True))
+
+
+def scene_of(core):
+    """Forty particles that swing and cool; the physics of the other tests, so that nothing new is compiled."""
+    bodies = {"body": {"shape": {"box": {"lower": [1.0], "upper": [6.0]}}, "temperature": core.HOT, "material": "solid"}}
+    grid = {"dimension": 1, "size": [7.0], "cell": 0.25}
+    output = {"every": 0.2, "snapshots": {"every": 0.2, "particles": ["temperature", "J"]}}
+    return core.experiment(1, {"time.step": DT, "time.end": 2.0}, bodies=bodies, grid=grid, output=output)
+
+
+def plant(scene, kind, rng):
+    """Spoil one particle: (particle, name of the field)."""
+    body, name = scene.bodies[0], ""
+    i = int(rng.integers(len(body.particles.m)))
+    if kind == "not finite":
+        name = str(rng.choice(list(FIELDS)))
+        holder = body.thermal if FIELDS[name] in ("theta", "c") else body.particles
+        array = getattr(holder, FIELDS[name])
+        array.reshape(len(array), -1)[i] = rng.choice([np.nan, np.inf])
+    elif kind == "inverted strain":
+        body.particles.B[i, 0] = -1.5
+    elif kind == "inverted volume":
+        body.particles.J[i] = -0.2
+    elif kind == "negative temperature":
+        body.thermal.theta[i] = -body.thermal.zero - rng.uniform(1.0, 1e3)
+    elif kind == "thrown out":
+        body.particles.v[i, 0] = rng.choice([-1.0, 1.0]) * 1e5
+    else:
+        body.particles.x[i, 0] = rng.choice([-1.0, 1.0]) * 1e3
+    return i, name
+
+
+def stir(scene):
+    p = scene.bodies[0].particles
+    p.v[:, 0] = 0.2 * np.sin(p.x[:, 0])
+
+
+def test_planted_blow_ups_are_found_at_once(core, monkeypatch):
+    """500 of them: a random particle, a random step. Found within 50 steps, with the reason and the particle; what was recorded before stays, and is sound."""
+    from mpm.scene.build import build
+
+    experiment, rng, whole = scene_of(core), np.random.default_rng(5), None
+    for number in range(500):
+        kind = PLANTS[number % len(PLANTS)]
+        monkeypatch.setattr(simulation, "BLOCK", int(rng.integers(1, 33)))
+        scene, when, done = build(experiment), rng.uniform(0.05, 1.7), []
+        stir(scene)
+
+        def beat(_, now, scene=scene, when=when, done=done, kind=kind):
+            if now >= when and not done:
+                done.append((round(now / DT), *plant(scene, kind, rng)))
+            return False
+
+        run = simulation.simulate(scene, beat)
+        step, particle, field = done[0]
+        assert run.outcome.kind == KINDS[kind], (kind, run.outcome)
+        assert 0 <= run.steps - step <= 50, (kind, run.steps, step)
+        if kind != "thrown out":  # the grid carries its neighbours with it
+            assert f"particle {particle}," in run.outcome.message, (kind, particle, run.outcome)
+        assert field in run.outcome.message and run.outcome.advice
+        kept = int(np.ceil(step * DT / 0.2 - 1e-9))  # at an output time itself the plant comes before the record
+        kept += kind == "thrown out" and len(run.times) > kept  # a speed that is finite is recorded; where it leads is seen at the next step
+        assert len(run.times) == kept == len(run.particles), (kind, step, run.times)
+        assert all(np.isfinite(values).all() for values in run.series.values())
+        assert all(np.isfinite(fields[name]).all() for fields in run.particles for name in fields)
+        if whole is None:
+            whole = core.play(experiment, stir)[1]
+        assert np.array_equal(run.series["temperature_mean"], whole.series["temperature_mean"][:kept])
+
+
+def test_advice_names_the_step_and_its_limit(core):
+    far = core.play(core.experiment(1, {"time.step": 0.6, "time.end": 60.0, "output.every": 6.0}), stir)[1]
+    assert not far.outcome.ok and "times the elastic wave limit" in far.outcome.advice and "`time.step` below" in far.outcome.advice
+    bold = core.play(core.experiment(1, {"time.safety": 6.0, "time.end": 60.0, "output.every": 6.0}), stir)[1]
+    assert not bold.outcome.ok and "lower `time.safety` to 1" in bold.outcome.advice
+
+
+def heat_alone(core, changes):
+    """A body at rest that cools in explicit heat steps; nothing heats it."""
+    air = [{"of": "body", "convection": {"beta": 0.5, "outside": core.COLD}}]
+    base = {"method.heat": "explicit", "time.end": 400.0, "output.every": 40.0, "time.step": 1e3}
+    return core.play(core.experiment(1, base | changes, drop=("expansion", "heating"), surfaces=air))[1]
+
+
+def test_a_heat_step_past_its_limit_leaves_the_bounds_of_its_data(core):
+    """The limit of the automatic step holds; at three times it temperatures leave what they were and what they met, and the advice says by how much."""
+    assert heat_alone(core, {}).outcome.ok
+    run = heat_alone(core, {"method.heat_step": 1.25, "time.safety": 1e6})
+    assert run.outcome.kind == "max_principle" and "beyond 300 to 400 K" in run.outcome.message
+    assert "times the heat limit" in run.outcome.advice and "`time.safety`" in run.outcome.advice
+
+
+def test_energy_from_nowhere_ends_a_run(core):
+    """A push from outside at half time: more than there ever was. The same swing without it is left alone."""
+    quiet, pushed = {"time.step": 0.02, "time.end": 10.0, "kappa": 0.0}, []
+
+    def play(factor):
+        bodies, pushed[:] = [], []
+
+        def begin(scene):
+            stir(scene)
+            bodies.append(scene.bodies[0])
+
+        def beat(fraction, _):
+            if fraction > 0.5 and not pushed:
+                pushed.append(fraction)
+                velocity = bodies[0].particles.v
+                velocity *= factor
+            return False
+
+        return core.play(core.experiment(1, quiet, drop=("surfaces", "expansion", "heating")), begin, beat)[1]
+
+    assert play(1.0).outcome.ok
+    run = play(10.0)
+    assert run.outcome.kind == "energy_growth" and "J more than at the start" in run.outcome.message
+    assert 5.0 <= run.times[-1] < 6.0
+
+
+def test_particles_that_come_apart_warn_or_end_the_run(core):
+    """A bar pulled to three times its length with two particles a cell."""
+    pull = {"time.end": 12.0, "output.every": 0.5, "kappa": 0.0}
+    bodies = {"body": {"shape": {"box": {"lower": [4.0], "upper": [6.0]}}, "temperature": core.HOT, "material": "solid"}}
+    grid = {"dimension": 1, "size": [20.0], "cell": 0.25}
+
+    def part(scene):
+        p = scene.bodies[0].particles
+        p.v[:, 0] = np.where(p.x[:, 0] > 5.0, 2.0, -0.2)
+
+    def play(fracture):
+        changes = pull | {"method.fracture": fracture}
+        return core.play(core.experiment(1, changes, drop=("surfaces", "expansion", "heating"), bodies=bodies, grid=grid), part)[1]
+
+    warned, ended = play("warn"), play("fail")
+    assert any("more than a cell apart" in text for text in warned.facts["warnings"])
+    assert ended.outcome.kind == "fractured" and "body" in ended.outcome.message and "method.particles" in ended.outcome.advice
+    assert ended.times[-1] < warned.times[-1]
+
+
+def test_holes_are_counted_along_every_direction():
+    from mpm.state import Plane
+
+    space, at = Plane(1.0, 15, 15), lambda *cells: np.array(cells, float) + 0.5
+    assert holes(space, at((1, 1), (2, 1), (3, 1), (3, 2))) == (0, 0)
+    assert holes(space, at((1, 1), (3, 1))) == (1, 0)
+    assert holes(space, at((1, 1), (1, 4))) == (1, 1)
+    assert holes(space, at((1, 1), (6, 1))) == (0, 0)  # two bodies' worth apart: no hole of one
+
+
+@pytest.mark.slow
+def test_guards_cost_less_than_a_hundredth(core, monkeypatch):
+    """Time in guards over time in the run: ten thousand particles in two dimensions, a frame every hundred steps."""
+    bodies = {"body": {"shape": {"box": {"lower": [1.0, 1.0], "upper": [13.5, 13.5]}}, "temperature": core.HOT, "material": "solid"}}
+    grid = {"dimension": 2, "size": [15.0, 15.0], "cell": 0.25}
+    experiment = core.experiment(2, {"time.step": 0.02, "time.end": 8.0, "output.every": 2.0}, bodies=bodies, grid=grid)
+    core.play(core.experiment(2))
+    spent = [0.0]
+
+    def timed(inner):
+        def outer(*arguments):
+            began = time.perf_counter()
+            try:
+                return inner(*arguments)
+            finally:
+                spent[0] += time.perf_counter() - began
+
+        return outer
+
+    monkeypatch.setattr(Guards, "block", timed(Guards.block))
+    monkeypatch.setattr(Guards, "frame", timed(Guards.frame))
+    shares = []
+    for _ in range(5):
+        spent[0] = 0.0
+        run = core.play(experiment, lambda scene: scene.bodies[0].particles.v.__setitem__(slice(None), 0.1))[1]
+        shares.append(spent[0] / run.wall_time)
+    print("share of guards:", shares)
+    assert min(shares) < 0.01, shares
