@@ -66,6 +66,10 @@ def limit(help_: str) -> Any:
     return typer.Option(metavar="T", parser=seconds, show_default=False, help=help_)
 
 
+KEEP = "How often a running point saves a checkpoint, from which a killed one goes on.  [default: 1min]"
+Checkpoints = Annotated[float | None, limit(KEEP)]
+
+
 def overrides(pairs: list[str] | None) -> dict[str, Any]:
     """`path=value` pairs as a mapping; `mpm.config.load` reads the text."""
     found: dict[str, Any] = {}

@@ -2,10 +2,13 @@
 
 import os
 import sys
+import threading
 import time
 from typing import Any, TextIO
 
 from mpm.sweep.report import Reporter
+
+LEAVE = 1.5  # s that a run has to stop after the first signal
 
 
 def reporter(as_json: bool, quiet: bool) -> Reporter:
@@ -111,11 +114,30 @@ class Single:
         if isinstance(self.reporter, Bar):
             self.reporter.start(1, 0, 1)
         self.stopped = ""
+        self.end: threading.Timer | None = None
 
     def signal(self, kind: str) -> None:
         if self.stopped:
             raise KeyboardInterrupt
         self.stopped = kind
+        self.end = threading.Timer(LEAVE, self.leave)
+        self.end.daemon = True
+        self.end.start()
+
+    def leave(self) -> None:
+        """The run has not come to a place where it can stop (it compiles, or takes one long step): end without it."""
+        sys.stderr.write("stopped; what ran since the last checkpoint is lost\n")
+        sys.stderr.flush()
+        os._exit({"interrupted": 130, "terminated": 143}[self.stopped])
+
+    def note(self, text: str) -> None:
+        self.reporter.note(text)
+
+    def close(self) -> None:
+        """The run is over, one way or the other."""
+        if self.end is not None:
+            self.end.cancel()
+        self.reporter.close()
 
     def beat(self, fraction: float, when: float) -> bool:
         self.reporter.beat({"": fraction})

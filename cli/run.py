@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import typer
-from mpm_cli.options import Config, Json, MaxRuns, Out, Quiet, Set, Smoke, load
+from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, load
 from mpm_cli.progress import Single
 from mpm_cli.talk import document, say
 
@@ -12,6 +12,7 @@ def run(
     config: Config,
     out: Out = None,
     set_: Set = None,
+    checkpoint: Checkpoints = None,
     smoke: Smoke = False,
     max_runs: MaxRuns = 10_000,
     as_json: Json = False,
@@ -19,8 +20,10 @@ def run(
 ) -> None:
     """Run one point to OUT/run.nc.
 
-    Of a config with a sweep it is the first; --set chooses another. Exit codes: 0 ok; 2 usage or config; 4 the point failed; 130 Ctrl-C.
+    Of a config with a sweep it is the first; --set chooses another. A run that was stopped or killed goes on from its checkpoint.
+    Exit codes: 0 ok; 2 usage or config; 4 the point failed; 130 Ctrl-C.
     """
+    from mpm.records.checkpoint import EVERY
     from mpm.records.netcdf import seal, write_whole
     from mpm.records.variables import OK, STATUS
     from mpm.sweep.api import default_out, run_one, signals
@@ -30,12 +33,16 @@ def run(
     progress = Single(as_json, quiet)
     try:
         with signals(progress.signal):
-            data, record = run_one(experiment, progress.beat, max_runs)
+            data, record, keeper = run_one(experiment, progress.beat, max_runs, folder / "run.checkpoint", checkpoint or EVERY, progress.note)
     finally:
-        progress.reporter.close()
+        progress.close()
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "run.nc", seal(data, record.line))
+    if not progress.stopped:
+        keeper.drop()
     progress.finished(experiment.name, record)
+    if progress.stopped and keeper.there:
+        say("the same command goes on from where it stopped", as_json, quiet)
     if as_json:
         document({"out": folder, "dataset": folder / "run.nc", **record.line, "status": STATUS[record.status], "finals": record.finals, "facts": record.facts})
     else:

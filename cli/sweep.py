@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, amount, limit, load
+from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, say, warn
 
@@ -41,6 +41,7 @@ def sweep(
     timeout: Annotated[float | None, limit("Stop a point after this long: 90, 90s, 5min, 2h.")] = None,
     retries: Annotated[int | None, typer.Option(metavar="N", min=0, help=RETRIES, show_default=False)] = None,
     time_budget: Annotated[float | None, limit("Stop the sweep after this long; run again to go on.")] = None,
+    checkpoint: Checkpoints = None,
     fail_fast: Annotated[bool, typer.Option("--fail-fast", help="Stop at the first point that is not ok.")] = False,
     max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
     max_runs: MaxRuns = 10_000,
@@ -62,11 +63,15 @@ def sweep(
 
         plan(config, out, jobs, set_, rerun, max_runs, smoke, as_json)
         return
+    from mpm.records.checkpoint import EVERY
     from mpm.sweep.api import default_out, execute
     from mpm.sweep.engine import Options
 
     experiment = load(config, set_, smoke)
-    options = Options(jobs, timeout, retries, time_budget, 1 if fail_fast else max_failures, rerun, smoke, scheduler, results == "shared", memory)
+    failures, every = 1 if fail_fast else max_failures, checkpoint or EVERY
+    options = Options(
+        jobs, timeout, retries, time_budget, failures, rerun, smoke, scheduler=scheduler, shared=results == "shared", memory=memory, checkpoint=every
+    )
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
     picture = draw(result)
     if as_json:

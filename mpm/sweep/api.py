@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from mpm.records.checkpoint import EVERY, Checkpoint
 from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Result
@@ -155,14 +156,25 @@ def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
     return store.dataset, written, counts(Points.of(plan), lines, skipped(plan))
 
 
-def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000) -> tuple[bytes, Any]:
-    """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions) and its record."""
+def run_one(
+    experiment: Any,
+    beat: Callable[[float, float], bool] | None = None,
+    max_runs: int = 10_000,
+    checkpoint: Path | None = None,
+    every: float = EVERY,
+    note: Callable[[str], None] | None = None,
+) -> tuple[bytes, Any, Any]:
+    """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions), its record, and its keeper.
+
+    checkpoint, every, note    where and how often [s] the run keeps how far it is, and who hears of trouble with that (records.checkpoint); None: nowhere
+    """
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
     from mpm.sweep.worker import compute
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
-    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, config=case.experiment.resolved())
+    keeper = Checkpoint(checkpoint, case.run_id, every, note) if checkpoint is not None else None
+    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     about = {
         "title": experiment.title,
@@ -173,7 +185,7 @@ def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None,
         "resolved": case.experiment.resolved(),
         "versions": versions(),
     }
-    return dataset(alone, about, {alone.cases[0].run_id: record}, {}, None), record
+    return dataset(alone, about, {alone.cases[0].run_id: record}, {}, None), record, keeper
 
 
 def tree_of(source: Any) -> Any:
