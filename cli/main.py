@@ -19,9 +19,10 @@ from mpm_cli.stability import stability
 from mpm_cli.status import status
 from mpm_cli.sweep import sweep
 from mpm_cli.talk import internal, warn
+from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, plot, schema, info, warmup)
+COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

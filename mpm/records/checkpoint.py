@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.records.netcdf import DamagedFile, seal, unseal, write_whole
+from mpm.records.netcdf import DamagedFile, seal, set_aside, unseal, write_whole
 from mpm.records.provenance import processor, source_hash, versions
 
 EVERY = 60.0  # wall time between two checkpoints, unless told [s]
@@ -87,7 +87,7 @@ class Checkpoint:
         try:
             memory, line = unpack(data, self.path)
         except DamagedFile as error:
-            self.path.replace(self.path.with_suffix(".damaged"))
+            set_aside(self.path)
             self.there = False
             self.note(f"{error}; set aside, the run starts from its start")
             return None

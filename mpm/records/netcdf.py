@@ -3,15 +3,17 @@
 A file is serialised in memory, then written beside its target, synced, renamed over it, and the folder synced: whoever opens the target
 finds the old file or the new one, never half. A full disk is then a plain OSError (h5py writing in place crashes the process).
 
-A sealed file ends in one line of JSON and the SHA-256 of everything before it. HDF5 does not look past its own end, so every reader of
-NetCDF-4 opens it; `summary` reads the line alone, without HDF5, in some 20 microseconds.
+A sealed file ends in one line of JSON, the SHA-256 of everything before it, and the line's own CRC-32. HDF5 does not look past its own end, so every
+reader of NetCDF-4 opens it; `summary` reads and checks the line alone, without HDF5, in some 20 microseconds.
 """
 
 import hashlib
 import io
+import itertools
 import json
 import os
 import secrets
+import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,7 +22,7 @@ import numpy as np
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
 DIGEST = 64
-TAIL = DIGEST + 10  # newline, digest, newline, length of the line as 8 hex digits
+TAIL = DIGEST + 18  # newline, digest, newline, CRC-32 and length of the line as 8 hex digits each
 
 
 class DamagedFile(Exception):
@@ -97,12 +99,12 @@ def put(group: Any, name: str, variable: Array) -> None:
 def seal(body: bytes, line: dict) -> bytes:
     """`body`, one line of JSON, and the digest of both."""
     text = json.dumps(line, ensure_ascii=False).encode()
-    return body + text + closing(body + text, len(text))
+    return body + text + closing(body + text, text)
 
 
-def closing(data: bytes, length: int) -> bytes:
+def closing(data: bytes, text: bytes) -> bytes:
     """The last TAIL bytes of a sealed file."""
-    return f"\n{hashlib.sha256(data).hexdigest()}\n{length:08x}".encode()
+    return f"\n{hashlib.sha256(data).hexdigest()}\n{zlib.crc32(text):08x}{len(text):08x}".encode()
 
 
 def unseal(data: bytes, path: Path | str = "") -> tuple[bytes, dict]:
@@ -110,7 +112,7 @@ def unseal(data: bytes, path: Path | str = "") -> tuple[bytes, dict]:
     try:
         length = int(data[-8:], 16)
         text = data[-TAIL - length : -TAIL]
-        if len(text) == length and data[-TAIL:] == closing(data[:-TAIL], length):
+        if len(text) == length and data[-TAIL:] == closing(data[:-TAIL], text):
             return data[: -TAIL - length], json.loads(text)
     except ValueError:
         pass  # told below, with the same words as any other damage
@@ -118,7 +120,7 @@ def unseal(data: bytes, path: Path | str = "") -> tuple[bytes, dict]:
 
 
 def summary(path: Path | str) -> dict | None:
-    """The line of a sealed file without reading the rest; None where there is no file. The body stays unchecked."""
+    """The line of a sealed file, checked, without reading the rest; None where there is no file. The body stays unchecked."""
     try:
         with open(path, "rb") as file:
             size = file.seek(0, os.SEEK_END)
@@ -128,11 +130,14 @@ def summary(path: Path | str) -> dict | None:
             if length + TAIL > len(end):
                 file.seek(max(0, size - TAIL - length))
                 end = file.read()
-            return json.loads(end[-TAIL - length : -TAIL])
+            text = end[-TAIL - length : -TAIL]
+            if end[-17:] != f"\n{zlib.crc32(text):08x}{len(text):08x}".encode():
+                raise ValueError("checksum")
+            return json.loads(text)
     except FileNotFoundError:
         return None
     except ValueError:
-        raise DamagedFile(f"{path}: damaged, its end is missing") from None
+        raise DamagedFile(f"{path}: damaged, its end is missing or is not what was written") from None
 
 
 def write_whole(path: Path | str, data: bytes) -> None:
@@ -165,6 +170,13 @@ def sync_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a damaged file to `<name>.damaged` (or `.damaged2`, ...): out of the way, and nothing is deleted."""
+    places = (path.with_suffix(f".damaged{number if number > 1 else ''}") for number in itertools.count(1))
+    place = next(place for place in places if not place.exists())
+    return path.rename(place)
 
 
 def free_space(folder: Path) -> str:

@@ -16,8 +16,9 @@ from mpm.records.checkpoint import EVERY, Checkpoint
 from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Result
+from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
-from mpm.sweep.store import Lock, Refused, Store
+from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, counts, exit_code
 
 QUICK = 200  # points that are collected even when told to leave at once
@@ -57,7 +58,10 @@ def execute(
     plan = planned(experiment, kind, max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
     store.out.mkdir(parents=True, exist_ok=True)
-    with Lock(store.out):
+    with Lock(store.out, jobs=options.jobs) as lock:
+        if lock.dead is not None:
+            left = store.tidy()
+            reporter.note(f"{said_owner(lock.dead)} ended without leaving; its lock is cleared" + (f", {left} half-written files are removed" if left else ""))
         store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"), kind=kind)
         lines, damaged = store.lines(list(points.cases))
         for run_id in damaged:

@@ -1,5 +1,6 @@
 """Compare: whether two datasets hold the same results. Times of day, wall times and attempts do not count."""
 
+import contextlib
 import json
 from pathlib import Path
 from typing import Any
@@ -24,12 +25,22 @@ def dataset_of(place: Path) -> Path:
     return place
 
 
+def opened(place: Path, xarray: Any) -> Any:
+    """A dataset's tree, lazily."""
+    path = dataset_of(place)
+    try:
+        return xarray.open_datatree(path, engine="h5netcdf")
+    except (OSError, ValueError, KeyError) as error:
+        raise Refused(f"{path} is not a whole NetCDF-4 file: {str(error).splitlines()[0] if str(error) else type(error).__name__}") from None
+
+
 def compare(one: Path, two: Path, rtol: float = 0.0, atol: float = 0.0) -> list[str]:
     """Differences in words, none if the two are the same within |a - b| <= atol + rtol |b| (NaN equals NaN)."""
     import xarray
 
     told: list[str] = []
-    with xarray.open_datatree(dataset_of(one), engine="h5netcdf") as a, xarray.open_datatree(dataset_of(two), engine="h5netcdf") as b:
+    with contextlib.ExitStack() as stack:
+        a, b = (stack.enter_context(opened(place, xarray)) for place in (one, two))
         paths = {node.path: None for tree in (a, b) for node in tree.subtree}
         for path in paths:
             here, there = (tree[path] if path in {node.path for node in tree.subtree} else None for tree in (a, b))

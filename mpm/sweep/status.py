@@ -8,15 +8,15 @@ from typing import Any
 from mpm.records.provenance import source_hash
 from mpm.records.variables import OK, STATUS
 from mpm.sweep.api import folder_plan, skipped
+from mpm.sweep.lock import owner, said_owner
 from mpm.sweep.report import label
-from mpm.sweep.store import owner, said_owner
 from mpm.sweep.tally import Points, counts
 
 SLOWEST = 5
 
 
 def status(out: Path) -> dict[str, Any]:
-    """Counts by status, failures grouped by reason, slowest points, points from other source, who works here, seconds of work left."""
+    """Counts by status, failures grouped by reason, slowest points, points from other source, who works here, seconds of work and of waiting left."""
     store, plan, about, lines, damaged = folder_plan(out)
     points = Points.of(plan)
     found = counts(points, lines, skipped(plan))
@@ -27,6 +27,8 @@ def status(out: Path) -> dict[str, Any]:
     done = [line["wall_time"] for line in lines.values() if line["status"] == OK]
     slow = sorted((run_id for run_id in lines if lines[run_id]["status"] == OK), key=lambda run_id: -lines[run_id]["wall_time"])[:SLOWEST]
     mean = sum(done) / len(done) if done else None
+    left, who = mean * found["pending"] if mean is not None else None, owner(store.out)
+    begun = {path.stem for path in (store.out / "checkpoints").glob("*.checkpoint")}
     return {
         "out": str(out),
         "name": about["name"],
@@ -40,8 +42,10 @@ def status(out: Path) -> dict[str, Any]:
         ],
         "slowest": [{"point": label(points.cases[run_id]), "seconds": lines[run_id]["wall_time"], "run_id": run_id} for run_id in slow],
         "seconds_a_point": mean,
-        "seconds_of_work_left": mean * found["pending"] if mean is not None else None,
-        "owner": owner(store.out),
+        "seconds_of_work_left": left,
+        "seconds_left": left / who["jobs"] if left is not None and who and who.get("jobs") else None,
+        "begun": sorted(begun.intersection(points.cases)),
+        "owner": who,
         "dataset": str(store.dataset) if store.dataset.exists() else None,
     }
 
@@ -70,6 +74,9 @@ def said(found: dict[str, Any]) -> str:
         told.append("  slowest: " + ", ".join(f"{row['point'] or row['run_id']} {row['seconds']:.3g} s" for row in found["slowest"]))
     if found["owner"] is not None:
         told.append(f"  being swept by {said_owner(found['owner'])}")
+    if found["begun"]:
+        told.append(f"  {len(found['begun'])} begun, with a checkpoint to go on from")
     if found["counts"]["pending"] and found["seconds_of_work_left"] is not None:
-        told.append(f"  work left: {found['seconds_of_work_left']:.3g} s of one core")
+        workers = f", {found['seconds_left']:.3g} s with {found['owner']['jobs']} workers" if found["seconds_left"] is not None else ""
+        told.append(f"  work left: {found['seconds_of_work_left']:.3g} s of one core{workers}")
     return "\n".join(told)

@@ -6,31 +6,27 @@
     OUT/checkpoints/<id>.checkpoint   how far a point is that was stopped or killed (records.checkpoint); gone when it is done
     OUT/sweep.nc             the dataset (collect.py)
     A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
-    OUT/lock                 held with flock by the process that writes: the kernel releases it when its owner dies
+    OUT/lock                 held by the process that writes (lock.py)
 """
 
 import contextlib
 import errno
-import fcntl
 import itertools
 import json
 import os
-import platform
 import secrets
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from mpm.records.netcdf import DamagedFile, summary, sync_folder, write_whole
-from mpm.records.provenance import now, versions
+from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
+from mpm.records.provenance import versions
+from mpm.sweep.about import read_about, write_about
+from mpm.sweep.lock import Refused
 
 BATCH = "batch-"
 FOLDER = 1000  # batches a folder
 FEW = 100  # points that are looked for one by one rather than by listing folders
-
-
-class Refused(Exception):
-    """The folder cannot be used as asked; the text says why and what can be done."""
 
 
 class Store:
@@ -62,6 +58,13 @@ class Store:
         """Drop checkpoints, so that these points run from their start."""
         for path in {path for path in (self.out / "checkpoints").glob("*.checkpoint") if path.stem in set(run_ids)}:
             path.unlink(missing_ok=True)
+
+    def tidy(self) -> int:
+        """Remove what processes that were killed left half written (never at a final path); how many files."""
+        left = [Path(folder, name) for folder, _, names in os.walk(self.out) for name in names if name.startswith(".") and name.endswith(".tmp")]
+        for path in left:
+            path.unlink(missing_ok=True)
+        return len(left)
 
     def own(self, run_ids: list[str]) -> set[str]:
         """Those of the points that have a file of their own."""
@@ -178,16 +181,11 @@ class Store:
     def set_aside(self, name: str) -> Path:
         """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""
         self.seen, self.batched, self.summaries = set(), {}, {}  # an earlier batch may hold some of its points
-        return self.path(name).rename(self.path(name).with_suffix(".damaged"))
+        return set_aside(self.path(name))
 
     def experiment(self) -> dict | None:
         """What experiment.json says; None for a new folder."""
-        try:
-            return json.loads((self.out / "experiment.json").read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            return None
-        except ValueError as error:
-            raise Refused(f"{self.out / 'experiment.json'} is damaged ({error}); move it away, the points beside it are kept and found again") from None
+        return read_about(self.out / "experiment.json")
 
     def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep") -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.
@@ -196,7 +194,7 @@ class Store:
         `--smoke` run is taken over by the full one.
         """
         new = {
-            "format": 1,
+            "format": 2,
             "name": experiment.name,
             "title": experiment.title,
             "smoke": smoke,
@@ -219,7 +217,7 @@ class Store:
                 )
             if {name: old.get(name) for name in new if name != "versions"} == {name: new[name] for name in new if name != "versions"}:
                 return
-        write_whole(self.out / "experiment.json", json.dumps(new, indent=1, ensure_ascii=False).encode())
+        write_about(self.out / "experiment.json", new)
 
 
 def entries(value: Any) -> dict[str, Any] | None:
@@ -253,48 +251,3 @@ def short(value: Any) -> str:
         return "absent"
     text = json.dumps(value, ensure_ascii=False)
     return text if len(text) <= 80 else text[:77] + "..."
-
-
-class Lock:
-    """`with Lock(folder):` one writer a folder. A dead owner cannot hold it."""
-
-    def __init__(self, folder: Path):
-        self.path = Path(folder) / "lock"
-        self.descriptor = -1
-
-    def __enter__(self) -> "Lock":
-        descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(descriptor)
-            raise Refused(f"{self.path.parent} is in use by {said_owner(owner(self.path.parent))}; wait for it, or choose another folder with --out") from None
-        self.descriptor = descriptor
-        os.ftruncate(descriptor, 0)
-        os.write(descriptor, json.dumps({"pid": os.getpid(), "host": platform.node(), "since": now()}).encode())
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        os.ftruncate(self.descriptor, 0)
-        os.close(self.descriptor)
-
-
-def owner(folder: Path) -> dict | None:
-    """Who sweeps in a folder now: {pid, host, since}; None for nobody."""
-    try:
-        descriptor = os.open(Path(folder) / "lock", os.O_RDWR)
-    except FileNotFoundError:
-        return None
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        return None
-    except BlockingIOError:
-        text = os.pread(descriptor, 4096, 0)
-        return json.loads(text) if text.endswith(b"}") else {}
-    finally:
-        os.close(descriptor)
-
-
-def said_owner(found: dict | None) -> str:
-    """The owner in words."""
-    return f"process {found['pid']} on {found['host']} since {found['since']}" if found else "another process"

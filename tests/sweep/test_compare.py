@@ -38,3 +38,9 @@ def test_nothing_to_compare(tmp_path):
         compare(tmp_path, tmp_path)
     with pytest.raises(Refused, match="does not exist"):
         compare(tmp_path / "a", tmp_path)
+
+
+def test_what_is_no_dataset_is_refused(tmp_path):
+    (tmp_path / "a.nc").write_bytes(b"nothing of the kind")
+    with pytest.raises(Refused, match=r"a\.nc is not a whole NetCDF-4 file"):
+        compare(tmp_path / "a.nc", tmp_path / "a.nc")

@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from mpm.records.point import Record
-from mpm.sweep.store import Lock, Refused, Store, differences, owner
+from mpm.sweep.lock import Lock, Refused, owner
+from mpm.sweep.store import Store, differences
 
 
 def experiment(**changes):
@@ -83,7 +84,7 @@ def test_one_writer_a_folder_and_the_dead_hold_nothing(tmp_path):
     code = f"""
 import signal
 from pathlib import Path
-from mpm.sweep.store import Lock
+from mpm.sweep.lock import Lock
 with Lock(Path({str(tmp_path)!r})):
     print("held", flush=True)
     signal.pause()
