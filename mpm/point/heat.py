@@ -138,6 +138,6 @@ def _(law, thermal, density):
 
 @time_constant.register(Lumped)
 def _(law, thermal, density):
-    if not 0.0 < law.conductance < math.inf:
+    if law.conductance == 0.0 or law.conductance == math.inf:
         return math.inf
     return density * value(thermal.alpha, thermal.zero + thermal.theta[0]) / law.conductance
