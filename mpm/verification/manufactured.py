@@ -4,7 +4,11 @@ u_i = s_i A sin kX_i sin(omega t), s = (1, -1);  Theta = Theta_0 + B prod cos kX
 P_i = [2 mu ln F_i + lam ln J - gamma theta]/F_i,   b_i = u_i'' - d_i P_i/R0
 R0 r = R0 alpha Theta' - sum d_i(kappa J F_i^-2 d_i Theta) + gamma Theta (ln J)'
 Walls slide and are insulated. k = pi/L.
-Order   2 in displacement and temperature; in stress 1.4, and 1.2 where strain (below 0.03) is small beside thermal strain
+Order   2 in displacement, stress and temperature with the cubic basis, which the configs use: at strain 0.016 down to 256 cells (displacement 1.4e-5,
+stress 1.8e-5). With the quadratic basis displacement keeps its order and stress does not: the MLS slope of a quadratic field is off by
+u'' sum w d^3/(2 sum w d^2), of order h and of either sign within a cell (6.7e-3, 3.1e-3, 1.2e-3 at 32, 64, 128 cells); the gradient of the basis has kinks
+at the cells' edges, which particles integrate to 1.2e-3, 7.6e-4, 7.1e-4. Both are local: forces, sums over a stencil, hardly see them.
+At a fixed Courant number the temperature is of order 1, as the step is.
 """
 
 import math
@@ -17,7 +21,7 @@ from mpm.state import Source
 from mpm.verification.setup import constants, only_body
 
 ORDER = 1.9
-STRESS = 1.4
+STRESS = 1.9
 
 
 def made(experiment) -> Made:

@@ -55,11 +55,37 @@ def test_order_in_the_plane(core, points):
     assert displacement > manufactured.ORDER and stress > manufactured.STRESS and temperature > manufactured.ORDER
 
 
+SMALL = {"exact.manufactured.displacement": 0.005, "exact.manufactured.temperature": 0.005}
+
+
+def refined(points, counts, changes):
+    """Runs at so many cells, with heat steps that keep the Courant number."""
+    return [points("manufactured_1d", "grid.cell", [1 / n], changes | {"method.heat_step": 0.25 / n})[0] for n in counts]
+
+
 @pytest.mark.slow
-def test_large_strain_does_not_spoil_refinement(points):
+def test_small_strain_to_256_cells(core, points):
+    """Strain 0.016: displacement and stress of order 2 from 16 to 256 cells."""
+    runs = refined(points, (16, 32, 64, 128, 256), SMALL)
+    displacement, stress, _ = orders(core, runs)
+    assert displacement > manufactured.ORDER and stress > manufactured.STRESS
+    assert runs[-1].finals["error_displacement"] < 2e-5 and runs[-1].finals["error_stress"] < 2.5e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gradient", "most"), [("mls", 1.6), ("bspline", 0.6)])
+def test_stress_on_the_quadratic_basis(core, points, gradient, most):
+    """What the cubic basis is for: displacement keeps its order, stress does not."""
+    runs = refined(points, (32, 64, 128), SMALL | {"grid.basis": "quadratic", "method.gradient": gradient})
+    displacement, stress, _ = orders(core, runs)
+    assert displacement > 1.4 and stress < most and runs[-1].finals["error_stress"] > 5e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("basis", ["quadratic", "cubic"])
+def test_large_strain_does_not_spoil_refinement(points, basis):
     """Strain 0.31, four particles a cell: below 2e-3 at 128 cells, and no rise on the way."""
-    changes = {"exact.manufactured.displacement": 0.1}
-    runs = [points("manufactured_1d", "grid.cell", [1 / n], changes | {"method.heat_step": 0.25 / n})[0] for n in (32, 64, 128)]
+    runs = refined(points, (32, 64, 128), {"exact.manufactured.displacement": 0.1, "grid.basis": basis})
     for field in ("displacement", "stress"):
         errors = [run.finals[f"error_{field}"] for run in runs]
         assert errors[-1] < 2e-3 and errors[0] > errors[1] > errors[2]
