@@ -1,9 +1,10 @@
-"""`where`: a condition on swept parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
+"""`where` and `derive`: conditions and formulas over parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
 
-Comparisons, and or not, + - * / **, numbers, text, names (short names or dotted paths).
+Formulas: + - * / **, numbers, names (short names or dotted paths), pi, and the functions below. Conditions: also comparisons, and or not, text.
 """
 
 import ast
+import math
 import operator
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,40 +13,51 @@ MOST_LETTERS = 1000
 COMPARE = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
 BINARY = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
 UNARY = {ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_}
-ALLOWED = "comparisons (< <= > >= == !=), and, or, not, + - * / **, numbers, text and names of parameters"
+FUNCTIONS: dict[str, Callable] = {name: getattr(math, name) for name in ("sqrt", "exp", "log", "log10", "sin", "cos", "tan", "atan")}
+FUNCTIONS |= {"floor": lambda x: float(math.floor(x)), "ceil": lambda x: float(math.ceil(x))}  # whole numbers as floats: their powers overflow at once too
+FUNCTIONS |= {"abs": abs, "min": min, "max": max}
+FORMULA = f"+ - * / **, numbers, pi, {', '.join(FUNCTIONS)} and names of parameters"
+ALLOWED = "comparisons (< <= > >= == !=), and, or, not, + - * / **, numbers, text, functions and names of parameters"
 
 
 class ConditionError(ValueError):
     """A condition that cannot be read, or that fails on a point."""
 
 
-class Condition:
-    """A condition and the names it uses; call it with a mapping of their values."""
+class Formula:
+    """A formula and the names it uses; call it with a mapping of their values for a number."""
+
+    what, allowed = "formula", FORMULA
 
     def __init__(self, text: str):
         if len(text) > MOST_LETTERS:
-            raise ConditionError(f"the condition is longer than {MOST_LETTERS} letters")
+            raise ConditionError(f"the {self.what} is longer than {MOST_LETTERS} letters")
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
-            raise ConditionError(f"this is no condition: {getattr(error, 'msg', None) or error}") from None
+            raise ConditionError(f"this is no {self.what}: {getattr(error, 'msg', None) or error}") from None
         self.names: dict[str, None] = {}
         try:
             self.run = self.build(tree.body)
         except RecursionError:
-            raise ConditionError("the condition is nested too deeply") from None
+            raise ConditionError(f"the {self.what} is nested too deeply") from None
         self.check(tree.body)
 
-    def check(self, body: ast.AST) -> None:
-        """What the whole must be."""
-        if not isinstance(body, ast.Compare | ast.BoolOp | ast.UnaryOp) or (isinstance(body, ast.UnaryOp) and not isinstance(body.op, ast.Not)):
-            raise ConditionError("a condition compares something, as in kappa > 0.3")
+    def check(self, node: ast.AST) -> None:
+        """Anything about the whole."""
 
-    def __call__(self, values: Mapping[str, Any]) -> bool:
+    def __call__(self, values: Mapping[str, Any]) -> Any:
+        value = self.evaluate(values)
+        if not isinstance(value, float | int) or isinstance(value, bool) or math.isnan(value):
+            raise ConditionError(f"the formula gives no number on this point ({value!r})")
+        return value
+
+    def evaluate(self, values: Mapping[str, Any]) -> Any:
+        """The value on a point."""
         try:
-            return bool(self.run(values))
-        except (TypeError, ZeroDivisionError, OverflowError) as error:
-            raise ConditionError(f"the condition fails on this point: {error}") from None
+            return self.run(values)
+        except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
+            raise ConditionError(f"the {self.what} fails on this point: {error}") from None
 
     def build(self, node: ast.AST) -> Callable[[Mapping[str, Any]], Any]:
         """A function of the values for one node of the tree."""
@@ -55,23 +67,52 @@ class Condition:
             except OverflowError:
                 raise ConditionError("a number is too large") from None
             return lambda values: value
+        if isinstance(node, ast.Call):
+            return self.call(node)
+        if isinstance(node, ast.Name) and node.id == "pi":
+            return lambda values: math.pi
         if isinstance(node, ast.Name | ast.Attribute):
             name = dotted(node)
             self.names[name] = None
             return lambda values: values[name]
-        if isinstance(node, ast.BoolOp):
-            parts, stop = [self.build(item) for item in node.values], isinstance(node.op, ast.Or)
-            return lambda values: any(part(values) for part in parts) if stop else all(part(values) for part in parts)
         if isinstance(node, ast.UnaryOp) and type(node.op) in UNARY:
             do, inner = UNARY[type(node.op)], self.build(node.operand)
             return lambda values: do(inner(values))
         if isinstance(node, ast.BinOp) and type(node.op) in BINARY:
             do, left, right = BINARY[type(node.op)], self.build(node.left), self.build(node.right)
             return lambda values: do(left(values), right(values))
+        raise ConditionError(f"a {self.what} may not hold {ast.unparse(node)[:60]!r}")
+
+    def call(self, node: ast.Call) -> Callable[[Mapping[str, Any]], Any]:
+        """One of the functions that are known."""
+        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
+            raise ConditionError(f"a {self.what} may not hold {ast.unparse(node)[:60]!r}")
+        do, given = FUNCTIONS[node.func.id], [self.build(item) for item in node.args]
+        return lambda values: do(*(one(values) for one in given))
+
+
+class Condition(Formula):
+    """A condition and the names it uses; call it with a mapping of their values for yes or no."""
+
+    what, allowed = "condition", ALLOWED
+
+    def check(self, node: ast.AST) -> None:
+        """A number alone is no condition."""
+        if not isinstance(node, ast.Compare | ast.BoolOp | ast.UnaryOp) or (isinstance(node, ast.UnaryOp) and not isinstance(node.op, ast.Not)):
+            raise ConditionError("a condition compares something, as in kappa > 0.3")
+
+    def __call__(self, values: Mapping[str, Any]) -> bool:
+        return bool(self.evaluate(values))
+
+    def build(self, node: ast.AST) -> Callable[[Mapping[str, Any]], Any]:
+        """Also comparisons and their joints."""
+        if isinstance(node, ast.BoolOp):
+            parts, stop = [self.build(item) for item in node.values], isinstance(node.op, ast.Or)
+            return lambda values: any(part(values) for part in parts) if stop else all(part(values) for part in parts)
         if isinstance(node, ast.Compare) and all(type(op) in COMPARE for op in node.ops):
             terms, does = [self.build(item) for item in (node.left, *node.comparators)], [COMPARE[type(op)] for op in node.ops]
             return lambda values: all(do(left(values), right(values)) for do, left, right in zip(does, terms, terms[1:], strict=False))
-        raise ConditionError(f"a condition may not hold {ast.unparse(node)[:60]!r}")
+        return super().build(node)
 
 
 def dotted(node: ast.AST) -> str:

@@ -71,6 +71,11 @@ class Experiment(Model):
             self.__dict__["method"] = self.method.model_copy(update={"offset": (0.0,) * self.grid.directions})
         return self
 
+    def _placed(self, like: "Experiment") -> "Experiment":
+        """Read from where another was."""
+        self._source, self._path = like._source, like._path
+        return self
+
     @property
     def source(self) -> str:
         """The config's text, verbatim."""

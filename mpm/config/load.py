@@ -146,7 +146,7 @@ def fix(root: Node, path: Path, names: Names) -> None:
     sweep = root.value["sweep"].plain()
     if not isinstance(sweep, dict):
         return
-    varied: list[tuple[Path, str]] = [(("sweep", "axes"), name) for name in mapping(sweep.get("axes"))]
+    varied: list[tuple[Path, str]] = [(("sweep", form), name) for form in ("axes", "derive") for name in mapping(sweep.get(form))]
     for form in ("zip", "points"):
         entries = sweep.get(form) if isinstance(sweep.get(form), list) else []
         varied += [(("sweep", form, index), name) for index, entry in enumerate(entries) for name in mapping(entry)]
@@ -180,7 +180,7 @@ def prune(root: Node) -> None:
     for kind, design in list(mapping(sweep.child("sample").value if sweep.child("sample") else None).items()):
         if (ranges := design.child("ranges")) is not None and not ranges.value:
             sweep.value["sample"].value.pop(kind)
-    for form in ("axes", "zip", "points", "sample"):
+    for form in ("axes", "zip", "points", "sample", "derive"):
         if (entries := sweep.child(form)) is not None and not entries.value and entries.value is not BAD:
             sweep.value.pop(form)
     if not set(sweep.value) - {"where"}:

@@ -1,4 +1,4 @@
-"""What varies: `sweep: {axes, zip, sample, points, where}`. Values are checked against the parameter they are for, when the points are planned."""
+"""What varies: `sweep: {axes, zip, sample, points, derive, where}`. Values are checked against the parameter they are for, when the points are planned."""
 
 from typing import Annotated, Any, ClassVar
 
@@ -104,4 +104,5 @@ class Sweep(Model):
     zip: tuple[dict[str, Values], ...] = doc((), description="parameters that move together, one dimension an entry")
     sample: one_of("design", *DESIGNS) | None = None
     points: tuple[dict[str, Any], ...] = doc((), description="an explicit list of points")
+    derive: dict[str, str] = doc({}, description="parameter: formula over others, in SI numbers, as in 'beta / kappa * 0.02'")
     where: str | None = doc(None, description="a condition on swept parameters; points that fail it are skipped")

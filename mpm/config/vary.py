@@ -5,69 +5,22 @@ A group is a dimension: an axis (one parameter), a zip (several that move togeth
 
 import json
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from mpm.config.condition import ALLOWED, Condition, ConditionError
+from mpm.config.condition import Condition, ConditionError, Formula
 from mpm.config.experiment import plain
 from mpm.config.explain import Finding, findings, shown
 from mpm.config.laws import Law
 from mpm.config.names import Names, UnknownName
 from mpm.config.problems import MOST_FINDINGS, listed
+from mpm.config.quantities import Whole
 from mpm.config.slots import Path, Slot
+from mpm.config.variation import Derived, Group, Parameter, Variation, at_path, label
 
 MOST_PARAMETERS = 100
 RESERVED = {"point", "sample", "obs", "dim", "x", "y", "z", "r", "series", "grid", "particles"}  # dimensions and groups of the dataset
-
-
-@dataclass
-class Parameter:
-    """One varied parameter: `values` as SI numbers or plain data, or a range `low`..`high`, even in the number or its logarithm."""
-
-    name: str
-    path: Path
-    slot: Slot
-    where: Path  # in the config's data, for errors
-    values: list[Any] = field(default_factory=list)
-    low: float = math.nan
-    high: float = math.nan
-    log: bool = False
-    short: str = ""
-    spoken: str = ""
-
-
-@dataclass
-class Group:
-    """A dimension of the sweep."""
-
-    form: str  # axis, zip, sample, points
-    parameters: list[Parameter]
-    size: int
-    where: Path
-    design: str = ""
-    seed: int = 0
-
-
-@dataclass
-class Variation:
-    """All groups in the order of the file's forms, and the condition."""
-
-    groups: list[Group]
-    condition: Condition | None = None
-    names: dict[str, Path] = field(default_factory=dict)  # of the condition
-
-    @property
-    def size(self) -> int:
-        """Number of points, as an exact integer."""
-        return math.prod(group.size for group in self.groups)
-
-    def parameters(self) -> Iterator[Parameter]:
-        """Every varied parameter."""
-        for group in self.groups:
-            yield from group.parameters
 
 
 class Vary:
@@ -92,20 +45,20 @@ class Vary:
             groups += self.sample(sweep.sample)
         if sweep.points:
             groups += self.points(sweep.points)
-        variation = Variation(groups)
+        variation = Variation(groups, [one for name, text in sweep.derive.items() if (one := self.derive(name, text))])
         self.conflicts(variation)
         self.shorten(variation)
         if sweep.where is not None:
             self.where(variation, sweep.where)
-        if not groups and not self.found:
-            self.found.append(Finding(("sweep",), "nothing varies", ["axes", "zip", "sample", "points"], on_key=True))
+        if not groups and not variation.derived and not self.found:
+            self.found.append(Finding(("sweep",), "nothing varies", ["axes", "zip", "sample", "points", "derive"], on_key=True))
         return variation
 
     def count(self) -> int:
         """How many different names the sweep uses."""
         sweep = self.sweep
         ranges = sweep.sample.ranges if sweep.sample is not None else {}
-        return len({*sweep.axes, *ranges, *(name for entry in (*sweep.zip, *sweep.points) for name in entry)})
+        return len({*sweep.axes, *ranges, *sweep.derive, *(name for entry in (*sweep.zip, *sweep.points) for name in entry)})
 
     def parameter(self, name: str, where: Path) -> Parameter | None:
         """A parameter by its name."""
@@ -248,19 +201,39 @@ class Vary:
                     break
             parameter.short = short
 
+    def derive(self, name: str, text: str) -> Derived | None:
+        """A parameter by its formula."""
+        where: Path = ("sweep", "derive", name)
+        parameter, formula = self.parameter(name, where), self.formula(Formula, text, where)
+        if parameter is None or formula is None:
+            return None
+        if parameter.slot.quantity is None and not parameter.slot.note(Whole):
+            self.found.append(Finding(where, f"{name} is no number", "a parameter that is one", on_key=True))
+            return None
+        return Derived(parameter, formula, self.paths(formula, where))
+
     def where(self, variation: Variation, text: str) -> None:
         where: Path = ("sweep", "where")
+        if condition := self.formula(Condition, text, where):
+            variation.condition, variation.names = condition, self.paths(condition, where)
+
+    def formula(self, kind: type[Formula], text: str, where: Path) -> Any:
+        """A formula or a condition, or what is wrong with it."""
         try:
-            condition = Condition(text)
+            return kind(text)
         except ConditionError as error:
-            self.found.append(Finding(where, str(error), ALLOWED, given=text))
-            return
-        variation.condition = condition
-        for name in condition.names:
+            self.found.append(Finding(where, str(error), kind.allowed, given=text))
+            return None
+
+    def paths(self, formula: Formula, where: Path) -> dict[str, Path]:
+        """What the names of a formula stand for."""
+        found = {}
+        for name in formula.names:
             try:
-                variation.names[name] = self.names.resolve(name)[0]
+                found[name] = self.names.resolve(name)[0]
             except UnknownName as error:
-                self.found.append(Finding(where, error.message, listed(error.allowed), error.suggestion, given=text))
+                self.found.append(Finding(where, error.message, listed(error.allowed), error.suggestion))
+        return found
 
 
 def adapter(slot: Slot) -> TypeAdapter:
@@ -268,29 +241,4 @@ def adapter(slot: Slot) -> TypeAdapter:
     return TypeAdapter(Annotated[slot.type, *slot.notes] if slot.notes else slot.type)
 
 
-def at_path(data: Any, path: Path) -> Any:
-    """The plain data at a path; a bare kind's name counts as its mapping."""
-    for key in path:
-        data = data[key]
-    return data
-
-
-def label(value: Any) -> str:
-    """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`, entries as `xx=0, yy=0`; what is absent is left out."""
-    if isinstance(value, dict):
-        return ", ".join(entry(key, inner) for key, inner in value.items() if inner is not None) or "none"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(label, value)) + "]"
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def entry(key: Any, inner: Any) -> str:
-    """A key of a mapping with what lies under it."""
-    if inner == {}:
-        return str(key)
-    return f"{key}({entries(inner)})" if isinstance(inner, dict) else f"{key}={label(inner)}"
-
-
-def entries(inner: Any) -> str:
-    """What stands in the brackets of a label."""
-    return ", ".join(f"{name}={label(item)}" for name, item in inner.items()) if isinstance(inner, dict) else label(inner)
+__all__ = ["RESERVED", "Derived", "Group", "Parameter", "Variation", "Vary", "at_path", "label"]

@@ -31,7 +31,8 @@ def default_out(experiment: Any) -> Path:
 
 def swept_paths(plan: Any) -> list[str]:
     """Config paths of everything that varies."""
-    return [coordinate.config_path for dim in plan.dims for coordinate in dim.coords if coordinate.config_path]
+    coordinates = [coordinate for dim in plan.dims for coordinate in dim.coords] + [coordinate for _, coordinate in plan.derived]
+    return [coordinate.config_path for coordinate in coordinates if coordinate.config_path]
 
 
 def skipped(plan: Any) -> int:

@@ -4,7 +4,7 @@ The product is counted as an integer before anything is built. A point is the re
 Cost of 10 000 points, measured on a busy two-core machine: 1.0 s (kappa x beta of the loaf), 2.6 s (five knobs of the slump).
 """
 
-import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -20,8 +20,9 @@ from mpm.config.names import ROOT, Names
 from mpm.config.nodes import Node, Origin, wrap
 from mpm.config.problems import ConfigError
 from mpm.config.slots import Path
-from mpm.config.vary import Group, Parameter, Variation, Vary, at_path, label
-from mpm.sweep.designs import unit_sample
+from mpm.config.variation import Group, Parameter, Variation, at_path, label
+from mpm.config.vary import Vary
+from mpm.sweep.ranges import columns, replaced
 
 MOST_TOLD = 10  # wrong points told one by one
 
@@ -46,15 +47,49 @@ class Dimension:
     coords: list[Coordinate]
 
 
-@dataclass(frozen=True)
 class Case:
-    """One point: its place in the dimensions, what is set, the experiment, and the hash of its content."""
+    """One point: its run id (the hash of its content); its place, what is set, and its experiment, each made when asked for."""
 
-    index: tuple[int, ...]
-    flat: int
-    values: dict[str, Any]
-    experiment: Experiment
-    run_id: str
+    __slots__ = ("flat", "maker", "run_id")
+
+    def __init__(self, maker: Any, flat: int, run_id: str):
+        self.maker, self.flat, self.run_id = maker, flat, run_id
+
+    @property
+    def index(self) -> tuple[int, ...]:
+        """Its place in the dimensions."""
+        return self.maker.index(self.flat)
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What the sweep sets, by path; what follows from it is left out."""
+        return self.maker.values(self.flat)
+
+    @property
+    def experiment(self) -> Experiment:
+        """The config of the point: some 0.1 ms."""
+        return self.maker.experiment(self.flat)
+
+
+@dataclass(frozen=True)
+class Alone:
+    """The maker of one point that is at hand already, as that of an experiment without a sweep."""
+
+    whole: Experiment
+    place: tuple[int, ...] = ()
+    told: dict[str, Any] = field(default_factory=dict)
+
+    def index(self, flat: int) -> tuple[int, ...]:
+        """Its place in the dimensions."""
+        return self.place
+
+    def values(self, flat: int) -> dict[str, Any]:
+        """What is set."""
+        return self.told
+
+    def experiment(self, flat: int) -> Experiment:
+        """The experiment itself."""
+        return self.whole
 
 
 @dataclass(frozen=True)
@@ -64,6 +99,7 @@ class Cases:
     dims: tuple[Dimension, ...] = ()
     cases: list[Case] = field(default_factory=list)
     skipped: np.ndarray = field(default_factory=lambda: np.zeros((), dtype=bool))
+    derived: tuple[tuple[tuple[str, ...], Coordinate], ...] = ()  # what follows by a formula: the dimensions it has, and its values there
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -77,7 +113,7 @@ class Cases:
 def plan(experiment: Experiment, max_runs: int = 10_000) -> Cases:
     """The points of an experiment; ConfigError if there are more than `max_runs` or if any is wrong."""
     if experiment.sweep is None:
-        return Cases(cases=[Case((), 0, {}, experiment, experiment.run_id)])
+        return Cases(cases=[Case(Alone(experiment), 0, experiment.run_id)])
     root = experiment._tree or wrap(experiment.resolved(), Origin("<experiment>"), [])
     names = Names(experiment)
     vary = Vary(experiment.sweep, names)
@@ -101,7 +137,8 @@ class Points:
     """The points of one variation."""
 
     def __init__(self, experiment: Experiment, variation: Variation, root: Node):
-        self.experiment, self.variation, self.root = experiment, variation, root
+        self.whole, self.variation, self.root = experiment, variation, root
+        self.groups, self.shape = [group.parameters for group in variation.groups], tuple(group.size for group in variation.groups)
         paths = [parameter.path for parameter in variation.parameters()]
         touched = {path[0] for path in paths} | ({"output"} if "time" in {path[0] for path in paths} else set())  # output.every may follow time.end
         kept = [name for name in Experiment.model_fields if name not in touched]
@@ -115,59 +152,112 @@ class Points:
     def build(self) -> Cases:
         """Check every point, drop those that the condition drops."""
         dims = tuple(self.dimension(group) for group in self.variation.groups)
-        skipped = np.zeros(tuple(dim.size for dim in dims), dtype=bool)
+        skipped = np.zeros(self.shape, dtype=bool)
         cases = []
-        for flat, index in enumerate(itertools.product(*(range(dim.size) for dim in dims))):
-            pairs = list(self.pairs(index))
-            if self.dropped(pairs):
-                skipped[index] = True
-                continue
-            if (case := self.case(index, flat, pairs)) is not None:
-                cases.append(case)
+        for flat in range(math.prod(self.shape)):
+            pairs = self.pairs(flat)
+            if pairs is None or self.dropped(pairs):
+                skipped[self.index(flat)] = True
+            elif point := self.point(pairs):
+                cases.append(Case(self, flat, point.identify(self.known)))
             if len(self.found) >= MOST_TOLD:
                 break
         stop(self.root, self.found)
         if not cases:
             stop(self.root, [Finding(("sweep", "where"), "the condition drops every point", "a condition that some points meet")])
-        return Cases(dims, cases, skipped)
+        return Cases(dims, cases, skipped, tuple(self.derived()))
 
-    def pairs(self, index: tuple[int, ...]) -> Iterator[tuple[Parameter, Any]]:
-        """Each varied parameter with its value at a point."""
-        for group, place in zip(self.variation.groups, index, strict=True):
-            for parameter in group.parameters:
-                yield parameter, self.columns[id(parameter)][place]
+    def index(self, flat: int) -> tuple[int, ...]:
+        """Place in the dimensions; the last one runs fastest."""
+        index = []
+        for size in reversed(self.shape):
+            flat, place = divmod(flat, size)
+            index.append(place)
+        return tuple(reversed(index))
+
+    def varied(self, flat: int) -> list[tuple[Parameter, Any]]:
+        """Each parameter of the groups with its value at a point."""
+        return [(parameter, self.columns[id(parameter)][place]) for group, place in zip(self.groups, self.index(flat), strict=True) for parameter in group]
+
+    def pairs(self, flat: int) -> list[tuple[Parameter, Any]] | None:
+        """Also those that follow by a formula, in the order of the file, so that one may use another above it; None where a formula fails."""
+        pairs = self.varied(flat)
+        for one in self.variation.derived:
+            given = self.named(one.names, pairs)
+            try:
+                value = one.formula(given)
+            except ConditionError as error:
+                self.found.append(Finding(("sweep", "derive", one.parameter.name), str(error), "", given=said(given)))
+                return None
+            pairs.append((one.parameter, int(value) if one.parameter.slot.quantity is None and float(value).is_integer() else value))
+        return pairs
+
+    def named(self, names: dict[str, Path], pairs: list[tuple[Parameter, Any]]) -> dict[str, Any]:
+        """Values of the names of a formula at a point."""
+        varied = {parameter.path: value for parameter, value in pairs}
+        found = {}
+        for name, path in names.items():
+            value = varied[path] if path in varied else at_path(self.base, path)
+            found[name] = value if isinstance(value, float | int) else float("inf") if value == ".inf" else label(value)
+        return found
+
+    def values(self, flat: int) -> dict[str, Any]:
+        """See `Case`."""
+        return {parameter.spoken: value for parameter, value in self.varied(flat)}
+
+    def experiment(self, flat: int) -> Experiment:
+        """See `Case`."""
+        pairs = self.pairs(flat)
+        assert pairs is not None, "a point that was checked"
+        return Experiment.model_validate(self.data(pairs))._placed(self.whole)
 
     def dropped(self, pairs: list[tuple[Parameter, Any]]) -> bool:
         """Whether the condition drops a point."""
         condition = self.variation.condition
         if condition is None:
             return False
-        varied = {parameter.path: value for parameter, value in pairs}
-        values = {}
-        for name, path in self.variation.names.items():
-            value = varied[path] if path in varied else at_path(self.base, path)
-            values[name] = value if isinstance(value, float | int) else float("inf") if value == ".inf" else label(value)
+        values = self.named(self.variation.names, pairs)
         try:
             return not condition(values)
         except ConditionError as error:
-            self.found.append(Finding(("sweep", "where"), str(error), "", given=", ".join(f"{key} = {label(value)}" for key, value in values.items())))
+            self.found.append(Finding(("sweep", "where"), str(error), "", given=said(values)))
             return True
 
-    def case(self, index: tuple[int, ...], flat: int, pairs: list[tuple[Parameter, Any]]) -> Case | None:
-        """A point as a checked experiment; None if it is wrong."""
+    def data(self, pairs: list[tuple[Parameter, Any]]) -> Any:
+        """A point as plain data."""
         data = self.template
         for parameter, value in pairs:
             data = replaced(data, parameter.path, value)
+        return data
+
+    def point(self, pairs: list[tuple[Parameter, Any]]) -> Experiment | None:
+        """A point as a checked experiment; None if it is wrong."""
         try:
-            point = Experiment.model_validate(data)
+            point = Experiment.model_validate(self.data(pairs))
         except ValidationError as error:
             self.blame(findings(error, ROOT), pairs)
             return None
         if wrong := [] if self.checked else check(point):
             self.blame(wrong, pairs)
             return None
-        point._source, point._path = self.experiment._source, self.experiment._path
-        return Case(index, flat, {parameter.spoken: value for parameter, value in pairs}, point, point.identify(self.known))
+        return point
+
+    def derived(self) -> Iterator[tuple[tuple[str, ...], Coordinate]]:
+        """The dimensions and values of what follows by a formula: over the groups that it depends on."""
+        depends: dict[Path, set[int]] = {parameter.path: {k} for k, group in enumerate(self.groups) for parameter in group}
+        for at, one in enumerate(self.variation.derived):
+            here = sorted(set().union(*(depends.get(path, set()) for path in one.names.values())))
+            depends[one.parameter.path] = set(here)
+            shape = tuple(self.shape[k] for k in here)
+            values = np.empty(shape)
+            for place in np.ndindex(shape):
+                flat = int(np.ravel_multi_index([place[here.index(k)] if k in here else 0 for k in range(len(self.shape))], self.shape)) if self.shape else 0
+                pairs = self.pairs(flat)
+                values[place] = np.nan if pairs is None else float(pairs[len(pairs) - len(self.variation.derived) + at][1])
+            slot = one.parameter.slot
+            units = slot.quantity.units if slot.quantity else "1"
+            names = tuple(self.name(self.variation.groups[k]) for k in here)
+            yield names, Coordinate(one.parameter.short, values, units, slot.description or one.parameter.short, one.parameter.spoken)
 
     def blame(self, wrong: list[Finding], pairs: list[tuple[Parameter, Any]]) -> None:
         """Tell what is wrong with a point where the sweep sets it."""
@@ -183,9 +273,12 @@ class Points:
 
     def dimension(self, group: Group) -> Dimension:
         """The dimension of a group with its coordinates."""
-        coords = [self.coordinate(parameter) for parameter in group.parameters]
-        name = {"sample": "sample", "points": "point"}.get(group.form, coords[0].name)
-        return Dimension(name, group.size, coords)
+        return Dimension(self.name(group), group.size, [self.coordinate(parameter) for parameter in group.parameters])
+
+    @staticmethod
+    def name(group: Group) -> str:
+        """The name of a group's dimension."""
+        return {"sample": "sample", "points": "point"}.get(group.form, group.parameters[0].short)
 
     def coordinate(self, parameter: Parameter) -> Coordinate:
         """Values along the dimension: floats where all are numbers, else labels."""
@@ -197,35 +290,6 @@ class Points:
         return Coordinate(parameter.short, values, units, parameter.slot.description or parameter.short, parameter.spoken)
 
 
-def replaced(data: Any, path: Path, value: Any) -> Any:
-    """A copy of nested containers with one value exchanged; what lies beside the path is shared."""
-    key = path[0]
-    below = value if len(path) == 1 else replaced(data.get(key, {}) if isinstance(data, dict) else data[key], path[1:], value)
-    if isinstance(data, dict):
-        return {**data, key: below}
-    return [*data[:key], below, *data[key + 1 :]]
-
-
-def columns(group: Group) -> list[list[Any]]:
-    """The values of each parameter of a group along its dimension."""
-    if group.form == "sample":
-        unit = unit_sample(group.design, group.size, len(group.parameters), group.seed)
-        return [spread(parameter, unit[:, index]).tolist() for index, parameter in enumerate(group.parameters)]
-    return [parameter.values or even(parameter, group.size) for parameter in group.parameters]
-
-
-def spread(parameter: Parameter, unit: np.ndarray) -> np.ndarray:
-    """Numbers in [0, 1) over the parameter's range, even in the number or in its logarithm."""
-    if parameter.log:
-        return np.clip(parameter.low * (parameter.high / parameter.low) ** unit, parameter.low, parameter.high)
-    return parameter.low + (parameter.high - parameter.low) * unit
-
-
-def even(parameter: Parameter, size: int) -> list[float]:
-    """An even range with exact ends; 15 digits, so that 0.1, 0.2, 0.3 are the same points as when they are listed."""
-    step = np.linspace(0.0, 1.0, size)
-    values = [float(f"{value:.15g}") for value in spread(parameter, step)]
-    values[0] = parameter.low
-    if size > 1:
-        values[-1] = parameter.high
-    return values
+def said(values: dict[str, Any]) -> str:
+    """`kappa = 0.3, beta = 5`."""
+    return ", ".join(f"{key} = {label(value)}" for key, value in values.items())

@@ -23,11 +23,13 @@ def storable(values: Any) -> np.ndarray:
 
 
 def planned(plan: Any) -> dict[str, Array]:
-    """Coordinates along the swept dimensions."""
+    """Coordinates along the swept dimensions, and what follows from them."""
     found = {}
     for dim in plan.dims:
         for row in dim.coords:
             found[row.name] = Array((dim.name,), storable(row.values), {"units": row.units or "1", "long_name": row.long_name, "config_path": row.config_path})
+    for dims, row in plan.derived:
+        found[row.name] = Array(dims, storable(row.values), {"units": row.units or "1", "long_name": row.long_name, "config_path": row.config_path})
     return found
 
 

@@ -18,7 +18,7 @@ from mpm.config.nodes import Origin, wrap
 from mpm.config.problems import ConfigError
 from mpm.config.vary import RESERVED, label
 from mpm.records.variables import VARIABLES
-from mpm.sweep.cases import Case, Cases, Coordinate, Dimension, stop
+from mpm.sweep.cases import Alone, Case, Cases, Coordinate, Dimension, stop
 
 OWN = ("method", "path", "place")
 
@@ -42,7 +42,7 @@ def plan(experiment: Experiment, max_runs: int = 10_000) -> Cases:
                 wrong.append(Finding(where, said, str(one.allowed or ""), on_key=True))
             continue
         point._source, point._path, point._tree = experiment._source, experiment._path, None
-        cases.append(Case((flat,), flat, {"method": method, "path": path} | values, point, point.run_id))
+        cases.append(Case(Alone(point, (flat,), {"method": method, "path": path} | values), flat, point.run_id))
     stop(root, wrong)
     return Cases((Dimension("setting", len(rows), coordinates(rows, cases)),), cases, np.zeros(len(rows), dtype=bool))
 

@@ -115,7 +115,7 @@ def test_methods_and_laws_on_axes():
         "1",
         "bump(base=1, heat=2, at=300, width=1)",
     ]
-    assert found["particles"].values.tolist() == [1.0, 2.0] and found["precision"].values.tolist() == ["float32", "float64"]
+    assert found["method_particles"].values.tolist() == [1.0, 2.0] and found["precision"].values.tolist() == ["float32", "float64"]
     assert cases.cases[-1].experiment.method.rigid.order == 2 and cases.cases[-1].experiment.materials["m"].heat.kappa.kind == "bump"
 
 
@@ -173,3 +173,54 @@ def test_ten_thousand_points():
     cases = planned({"sample": sample})
     assert len(cases) == 10_000 and len({case.run_id for case in cases.cases}) == 10_000
     assert time.perf_counter() - start < 10  # 3 s are wanted on an idle machine; 1.6 s were measured
+
+
+def test_derived_parameters_follow_others_and_are_labelled():
+    cases = planned({"axes": {"kappa": [0.2, 0.4], "cell": [1e-3, 2e-3]}, "derive": {"beta": "0.5 * kappa / cell", "alpha": "1000 * sqrt(beta / 100)"}})
+    found = [(case.experiment.surfaces[0].convection.beta, case.experiment.materials["m"].heat.alpha.value) for case in cases.cases]
+    assert found == [(0.5 * k / h, 1000 * (0.5 * k / h / 100) ** 0.5) for k in (0.2, 0.4) for h in (1e-3, 2e-3)]
+    (dims, beta), (_, alpha) = cases.derived
+    assert dims == ("kappa", "cell") and beta.name == "beta" and beta.units == "W/m2/K" and alpha.values.shape == (2, 2)
+    assert beta.values.tolist() == [[100.0, 50.0], [200.0, 100.0]] and cases.cases[0].values.keys() == {"materials.m.heat.fourier.kappa", "grid.cell"}
+    listed = planned({"points": [{"kappa": 0.2, "beta": 100.0, "alpha": 1000.0}]}).cases[0]
+    assert listed.run_id == planned({"axes": {"kappa": [0.2]}, "derive": {"beta": "500 * kappa", "alpha": "1000"}}).cases[0].run_id
+
+
+def test_a_derived_parameter_depends_on_its_dimensions_alone_and_a_condition_may_read_it():
+    cases = planned({"axes": {"kappa": [0.2, 0.4, 0.6], "cell": [1e-3, 2e-3]}, "derive": {"beta": "100 * kappa"}, "where": "beta < 50"})
+    assert cases.derived[0][0] == ("kappa",) and len(cases) == 4 and cases.skipped[2].all()
+    alone = planned({"derive": {"beta": "100 * kappa"}})
+    assert len(alone) == 1 and alone.cases[0].experiment.surfaces[0].convection.beta == 100.0 and alone.derived[0][0] == ()
+
+
+@pytest.mark.parametrize("derive, said", [
+    ({"beta": "kappa +"}, "this is no formula"),
+    ({"beta": "__import__('os').system('echo hello')"}, "a formula may not hold"),
+    ({"beta": "kappa.__class__"}, "nothing in this file is called"),
+    ({"beta": "open('x')"}, "a formula may not hold"),
+    ({"beta": "[1, 2][0]"}, "a formula may not hold"),
+    ({"beta": "kappa if kappa else 1"}, "a formula may not hold"),
+    ({"beta": "kapa"}, "nothing in this file is called 'kapa'"),
+    ({"beta": "1 / (kappa - 0.2)"}, "the formula fails on this point"),
+    ({"beta": "(0.1 - kappa) ** 0.5"}, "gives no number"),
+    ({"beta": "-kappa"}, "is wrong"),
+    ({"beta": "9.0 ** 9 ** 9 ** 9"}, "the formula fails"),
+    ({"kappa": "2 * beta"}, "varies already"),
+    ({"transfer": "2"}, "is no number"),
+])  # fmt: skip
+def test_formulas_that_are_wrong_are_told(derive, said):
+    with pytest.raises(ConfigError) as caught:
+        planned({"axes": {"kappa": [0.2, 0.4]}, "derive": derive})
+    assert said in str(caught.value)
+
+
+def test_an_override_takes_a_parameter_out_of_the_formulas():
+    config = SLAB | {"sweep": {"axes": {"kappa": [0.2, 0.4]}, "derive": {"beta": "100 * kappa"}}}
+    assert [case.experiment.surfaces[0].convection.beta for case in plan(load(config, {"beta": 7})).cases] == [7, 7]
+    assert [case.experiment.surfaces[0].convection.beta for case in plan(load(config, {"kappa": 0.3})).cases] == [30]
+
+
+def test_a_sobol_sample_grows_without_losing_the_old():
+    ranges = {"kappa": [0.2, 0.4], "beta": {"log": [1, 100]}}
+    ids = [[case.run_id for case in planned({"sample": {"sobol": {"count": count, "seed": 3, "ranges": ranges}}}).cases] for count in (16, 32, 100)]
+    assert ids[1][:16] == ids[0] and ids[2][:32] == ids[1]

@@ -1,0 +1,96 @@
+"""Variation: what a sweep section comes to: groups of parameters, formulas and a condition. `vary` makes it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from mpm.config.condition import Condition, Formula
+from mpm.config.slots import Path, Slot
+
+
+@dataclass
+class Parameter:
+    """One varied parameter: `values` as SI numbers or plain data, or a range `low`..`high`, even in the number or its logarithm."""
+
+    name: str
+    path: Path
+    slot: Slot
+    where: Path  # in the config's data, for errors
+    values: list[Any] = field(default_factory=list)
+    low: float = math.nan
+    high: float = math.nan
+    log: bool = False
+    short: str = ""
+    spoken: str = ""
+
+
+@dataclass
+class Group:
+    """A dimension of the sweep."""
+
+    form: str  # axis, zip, sample, points
+    parameters: list[Parameter]
+    size: int
+    where: Path
+    design: str = ""
+    seed: int = 0
+
+
+@dataclass
+class Derived:
+    """A parameter that follows from others by a formula, whose names stand for paths."""
+
+    parameter: Parameter
+    formula: Formula
+    names: dict[str, Path]
+
+
+@dataclass
+class Variation:
+    """All groups in the order of the file's forms, what follows from them, and the condition."""
+
+    groups: list[Group]
+    derived: list[Derived] = field(default_factory=list)
+    condition: Condition | None = None
+    names: dict[str, Path] = field(default_factory=dict)  # of the condition
+
+    @property
+    def size(self) -> int:
+        """Number of points, as an exact integer."""
+        return math.prod(group.size for group in self.groups)
+
+    def parameters(self) -> Iterator[Parameter]:
+        """Every varied parameter."""
+        for group in self.groups:
+            yield from group.parameters
+        for one in self.derived:
+            yield one.parameter
+
+
+def at_path(data: Any, path: Path) -> Any:
+    """The plain data at a path; a bare kind's name counts as its mapping."""
+    for key in path:
+        data = data[key]
+    return data
+
+
+def label(value: Any) -> str:
+    """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`, entries as `xx=0, yy=0`; what is absent is left out."""
+    if isinstance(value, dict):
+        return ", ".join(entry(key, inner) for key, inner in value.items() if inner is not None) or "none"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(label, value)) + "]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def entry(key: Any, inner: Any) -> str:
+    """A key of a mapping with what lies under it."""
+    if inner == {}:
+        return str(key)
+    return f"{key}({entries(inner)})" if isinstance(inner, dict) else f"{key}={label(inner)}"
+
+
+def entries(inner: Any) -> str:
+    """What stands in the brackets of a label."""
+    return ", ".join(f"{name}={label(item)}" for name, item in inner.items()) if isinstance(inner, dict) else label(inner)
