@@ -26,7 +26,7 @@ AXES = ("x", "r", "y", "z")
 
 def collect(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> bool:
     """Write sweep.nc unless it holds just this already; whether it was written. `about` is experiment.json."""
-    digest = hashlib.sha256(json.dumps([about, lines], sort_keys=True).encode()).hexdigest()
+    digest = fingerprint(about, lines)
     try:
         old = summary(store.dataset)
     except DamagedFile:
@@ -35,6 +35,14 @@ def collect(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> boo
         return False
     write_whole(store.dataset, seal(assemble(store, plan, about, lines), {"digest": digest, "points": len(plan.cases)}))
     return True
+
+
+def fingerprint(about: dict, lines: dict[str, dict]) -> str:
+    """A hash of all that goes into the dataset: point by point, as their text together would be large."""
+    digest = hashlib.sha256(json.dumps(about, sort_keys=True).encode())
+    for run_id in sorted(lines):
+        digest.update(json.dumps(lines[run_id], sort_keys=True).encode())
+    return digest.hexdigest()
 
 
 def assemble(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> bytes:
@@ -47,6 +55,7 @@ def assemble(store: Store, plan: Any, about: dict, lines: dict[str, dict]) -> by
             file = store.path(store.places([run_id])[run_id]).relative_to(store.out)
             damaged[run_id] = f"pending: {file} is damaged; `mpm verify` sets it aside, and the next sweep runs the point again"
         else:
+            record.config = {}  # the plan has it; 10 000 of them are 60 MB
             records[run_id] = record
     return dataset(plan, about, records, damaged, None if fits else {run_id: str(store.path(run_id).relative_to(store.out)) for run_id in records})
 

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
+from mpm.records.point import slim
 from mpm.records.provenance import versions
 from mpm.sweep.about import read_about, write_about
 from mpm.sweep.lock import Refused
@@ -152,7 +153,7 @@ class Store:
                 self.seen.add(name)
                 for point in line["points"]:
                     if name >= self.batched.get(point["run_id"], ""):
-                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = name, point
+                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = name, slim(point)
         return damaged
 
     def bytes(self, run_ids: Iterable[str]) -> int:
@@ -175,7 +176,7 @@ class Store:
                 damaged.append(run_id)
                 continue
             if line is not None:
-                found[run_id] = line
+                found[run_id] = slim(line) if run_id in own else line
         return found, damaged
 
     def set_aside(self, name: str) -> Path:
