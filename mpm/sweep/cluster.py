@@ -29,6 +29,7 @@ from mpm.sweep.store import Refused, Store
 
 LOOK = 1.0  # s between two looks at which workers there are
 PATIENCE = 600.0  # s without a scheduler before the sweep gives up; also without a single worker
+SAID = 5.0  # s without a worker before that is said
 ANSWER = 5.0  # s that the scheduler has to answer
 
 
@@ -51,6 +52,7 @@ class Cluster:
         self.looked = 0.0
         self.alive = time.monotonic()  # when there was a worker last, or hope of one
         self.pids: dict[str, int] = {}
+        self.waiting = False  # and it was said
         self.local = Local(self.distributed, jobs) if address == "local" else None
         self.address = self.local.address if self.local else address
         self.client: Any = None
@@ -160,9 +162,12 @@ class Cluster:
                 events += [self.drop(name, f"worker {worker} is gone") for name, (at, _, _) in list(self.flights.items()) if at == worker]
         self.begin({worker: threads for worker, threads in there.items() if worker not in self.slots and worker not in self.refused})
         if self.slots or self.preparing:
-            self.alive = self.looked
+            self.alive, self.waiting = self.looked, False
         elif self.refused and set(there) <= set(self.refused):
             raise BrokenWorkers("no worker of the cluster can be used: " + "; ".join(sorted(set(self.refused.values()))))
+        elif self.looked - self.alive > SAID and not self.waiting:
+            self.waiting = True
+            events.append(Note(f"the cluster at {self.address} has no workers; waiting for some, {PATIENCE:.0f} s at most"))
         elif self.looked - self.alive > PATIENCE:
             raise BrokenWorkers(f"the cluster at {self.address} has had no workers for {PATIENCE:.0f} s")
         return events
