@@ -1,4 +1,5 @@
-"""The table of the verification problems: `python -m mpm.study.verification` writes configs/verification/README.md.
+"""The table of the verification problems: `python -m mpm.study.verification` writes configs/verification/README.md; with names, only those rows again
+(`python -m mpm.study.verification hencky_bar standing_wave`; the last brings the table of transfers of mpm.study.wave).
 
 Every config there, as one point, at three resolutions: those of its sweep over grid.cell or time.step, else its own halved twice (cells of a
 body on a grid, steps of a material point). The order is fitted to all three; a problem that is exact in any step, or
@@ -17,13 +18,19 @@ ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperatu
 FOLDER = Path(__file__).parents[2] / "configs" / "verification"
 HEAD = """# Verification problems
 
-Made by `python -m mpm.study.verification` in {seconds:.0f} s of processor time, compilation included. Each line is a config of this folder at the three
+Made by `python -m mpm.study.verification`, about four minutes of processor time, compilation included. Each line is a config of this folder at the three
 resolutions that are named; what the problem is stands at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
-displacement over all times and particles, relative; of temperature at the end. Time is that of the three runs, without compilation. A problem without an
+displacement over all times and particles, relative (of the membrane at rest: at the end); of temperature at the end. Time is that of the three runs, without compilation. A problem without an
 order is exact in any step, or (rigid_rotation) bounded by the load of its own motion.
 
 | config | method | refined | error | at three resolutions | order | declared | time, s |
 |---|---|---|---|---|---|---|---|
+"""
+WAVE = """
+## Which transfer keeps a thermoelastic wave
+
+`python -m mpm.study.wave`: errors of the frequency and of the physical damping of `standing_wave` at 64 cells, by transfer of velocity and of temperature.
+
 """
 
 
@@ -83,7 +90,9 @@ def method(experiment) -> str:
         return "material point"
     if not experiment.moving:
         return f"rigid, {type(experiment.method.rigid).kind}"
-    words = type(experiment.method.transfer).kind, experiment.method.gradient, f"{experiment.method.particles} particles"
+    used = experiment.method
+    words = [type(used.transfer).kind, used.gradient, f"{used.particles} particles"]
+    words += [experiment.grid.basis] * (experiment.grid.basis != "quadratic") + ([type(used.locking).kind] if used.locking is not None else [])
     return ", ".join(words)
 
 
@@ -108,14 +117,31 @@ def measure(path: Path) -> Line:
     return Line(path.stem, method(experiment), refined, values, field, tuple(errors), declared, seconds)
 
 
-def main() -> None:
-    """Measure every config and write the table; a line on standard error for each."""
-    lines = []
-    for path in sorted(FOLDER.glob("*.yaml")):
-        lines.append(measure(path).text())
-        print(lines[-1], file=sys.stderr, flush=True)
-    (FOLDER / "README.md").write_text(HEAD.format(seconds=time.process_time()) + "\n".join(lines) + "\n", encoding="utf-8")
+def written(text: str) -> tuple[dict[str, str], str]:
+    """Rows by name, and the section on transfers, of a table written before."""
+    before, _, wave = text.partition(WAVE)
+    rows = [line for line in before.splitlines() if line.startswith("| ") and not line.startswith("| config ")]
+    return {row.split("|")[1].strip(): row for row in rows}, wave
+
+
+def main(names: list[str]) -> None:
+    """Measure every config, or those named, and write the table; a line on standard error for each."""
+    from mpm.study.wave import table
+
+    target, paths = FOLDER / "README.md", {path.stem: path for path in sorted(FOLDER.glob("*.yaml"))}
+    unknown = [name for name in names if name not in paths]
+    if unknown:
+        raise SystemExit(f"no config {', '.join(unknown)}; there are {', '.join(paths)}")
+    rows, wave = written(target.read_text(encoding="utf-8")) if names and target.exists() else ({}, "")
+    for name in names or paths:
+        rows[name] = measure(paths[name]).text()
+        print(rows[name], file=sys.stderr, flush=True)
+    if not wave or "standing_wave" in names:
+        wave = table()[1]
+        print(wave, file=sys.stderr, flush=True)
+    lines = [rows[name] for name in paths if name in rows]
+    target.write_text(HEAD + "\n".join(lines) + "\n" + WAVE + wave, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -26,6 +26,7 @@ def test_reference_at_nu_0499_does_not_lock():
     assert deflection(static(*lame(250.0, 0.4999), 32), TIP[None])[0, 1] == pytest.approx(tips[-1], rel=2e-3)
 
 
+@pytest.mark.slow
 def test_tip_with_fbar(points):
     (run,) = points("cooks_membrane", "grid.cell", (4.0,), {"output.every": 5.0})
     assert abs(run.finals["error_tip"]) < 0.02 and run.finals["error_displacement"] < 0.025
