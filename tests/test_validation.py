@@ -60,5 +60,6 @@ def test_a_disc_of_particles_gives_back_its_flow_law(flow):
 
     experiment = mpm.load(CONFIGS / "scenes" / "dough_creep.yaml", flow)
     found, law = creep_run(mpm.run_point(experiment), experiment), experiment.materials["dough"].flow
-    assert (found.M, found.p0, found.eta) == (pytest.approx(law.M.value, rel=0.01), pytest.approx(law.p0.value, rel=2e-3), pytest.approx(law.eta.value, rel=0.01))
+    assert found.M == pytest.approx(law.M.value, rel=0.01) and found.eta == pytest.approx(law.eta.value, rel=0.01)
+    assert found.p0 == pytest.approx(law.p0.value, rel=2e-3)
     assert found.E == pytest.approx(12e3, rel=0.02) and found.nu == pytest.approx(0.15, abs=2e-3)
