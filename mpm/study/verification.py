@@ -18,7 +18,8 @@ ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperatu
 FOLDER = Path(__file__).parents[2] / "configs" / "verification"
 HEAD = """# Verification problems
 
-Made by `python -m mpm.study.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
+Made by `python -m mpm.study.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands
+at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
 displacement over all times and particles, relative (of the membrane at rest: at the end); of temperature at the end. Time is that of the three runs on a
 busy machine, without compilation. A problem without an order is exact in any step, or (rigid_rotation) bounded by the load of its own motion.
 
