@@ -47,7 +47,8 @@ def heat_scale(experiment, run):
     return max(abs(run.series["heat_exchanged"]).max(), abs(run.series["heat_total"]).max(), held * spread * run.series.get("mass_total", [0.0])[0])
 
 
-SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in ("verification", "stability", "studies") else []) for path in CONFIGS]  # a compilation each
+SLOW = ("verification", "stability", "studies")  # a compilation each
+SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW else []) for path in CONFIGS]
 
 
 @pytest.mark.parametrize("path", SHORT, ids=lambda path: str(path.relative_to(ROOT)))

@@ -114,7 +114,8 @@ def finish(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
     ax.xaxis.set_major_formatter(FuncFormatter(seconds))
     for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(LogLocator(numticks=12))
+        least_shown, most_shown = sorted(axis.get_view_interval())
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if most_shown < 300 * least_shown else (1.0,), numticks=12))
         axis.set_minor_formatter(NullFormatter())
     load, rounds = data["load"].values, data.sizes["round"]
     said = f"least of {rounds} rounds (bars: to the median; load of the machine {load.min():.1f} to {load.max():.1f})"

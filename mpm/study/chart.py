@@ -105,11 +105,12 @@ def chart(
 
 
 def name(values: dict[str, Any]) -> str:
-    """A setting in words: `APIC, cell 0.125, step 0.01`."""
+    """A setting in words: `APIC, cell 0.125, step 0.01`; with the path's name where only the cell is refined along it (`automatic step`)."""
     from mpm.config.vary import label
 
     numbers = {path.rsplit(".", 1)[-1]: value for path, value in values.items() if isinstance(value, float | int)}
-    return ", ".join([values["method"], *(f"{word} {label(value)}" for word, value in numbers.items())])
+    path = [values["path"]] if set(numbers) == {"cell"} and values["path"] not in ("", "cell") else []
+    return ", ".join([values["method"], *(f"{word} {label(value)}" for word, value in numbers.items() if word != "particles"), *path])
 
 
 def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[dict[str, Array], list[str]]:
@@ -134,11 +135,12 @@ def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[d
     put("runs", Array(("setting",), np.array([timings.number.get(run_id, 0) for run_id in rows]), {"units": "1", "long_name": "runs in a timing"}))
     cold = np.array([timings.compiling.get(case.values["method"], np.nan) for case in plan.cases])
     put("compiling", Array(("setting",), cold, {"units": "s", "long_name": "processor time of import, compilation and one run, empty cache, of the method"}))
-    front = pareto(error, variables["cpu_min"].data)
+    ranked = np.where([run_id not in rows[:i] for i, run_id in enumerate(rows)], error, np.nan)  # where two paths meet it is one setting
+    front = pareto(ranked, variables["cpu_min"].data)
     put("front", Array(("setting",), front.astype(np.int8), {"units": "1", "long_name": "1 where no other setting has less error in less time"}))
     variables |= peers(rounds, scale_of(experiment, tree))
     least_time, median = variables["cpu_min"].data, variables["cpu_median"].data
-    return variables, [sentence(cheapest(error, least_time, median, tolerance), names, error, least_time, median) for tolerance in TOLERANCES]
+    return variables, [sentence(cheapest(ranked, least_time, median, tolerance), names, ranked, least_time, median) for tolerance in TOLERANCES]
 
 
 def least(data: np.ndarray, how) -> np.ndarray:

@@ -32,12 +32,22 @@ def main() -> None:
             print(f"{name}: {line}", flush=True)
 
 
+def small(path: Path) -> None:
+    """A picture of few colours in a third of the bytes, for the repository."""
+    from PIL import Image  # comes with matplotlib
+
+    with Image.open(path) as picture:
+        few = picture.convert("RGB").quantize(96, dither=Image.Dither.NONE)
+    few.save(path, optimize=True)
+
+
 def theory() -> list[str]:
     """docs/theory.png."""
     from mpm.plots.theory import transfers
     from mpm.study.theory import dataset
 
     transfers(dataset(), DOCS / "theory.png")
+    small(DOCS / "theory.png")
     return [str(DOCS / "theory.png")]
 
 
@@ -49,6 +59,7 @@ def return_map() -> list[str]:
 
     data = dataset()
     speed_accuracy(data, DOCS / "chart_return_map.png")
+    small(DOCS / "chart_return_map.png")
     rows = zip(data.method.values, data.place.values, data.cpu_min.values, data.relative_error.values, strict=True)
     return [f"{method}, {steps} steps: {duration(seconds)} a state, error {percent(error)}" for method, steps, seconds, error in rows]
 
@@ -71,6 +82,7 @@ def charted(name: str, peers: dict[str, str], cold: bool) -> list[str]:
         return [f"stopped ({result.stopped}); the same command goes on"]
     with xarray.open_dataset(result.dataset, engine="h5netcdf") as data:
         speed_accuracy(data.load(), DOCS / f"chart_{name}.png")
+        small(DOCS / f"chart_{name}.png")
         remember(name, experiment, data)
     return result.sentences
 
