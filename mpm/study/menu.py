@@ -63,6 +63,7 @@ def rigid() -> dict[str, dict]:
         "implicit, order 4, tolerance 1e-6": {"set": {"method.rigid": {"implicit": {"order": 4, "tolerance": 1e-6}}}},
         "implicit, order 2": {"set": {"method.rigid": {"implicit": {"order": 2, "tolerance": 1e-4}}}},
         "explicit": {"set": {"method.rigid": "explicit"}},
+        "bounded": {"set": {"method.rigid": "bounded"}},
     }
 
 

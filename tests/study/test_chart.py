@@ -153,3 +153,18 @@ def test_defaults_follow_the_physics_of_the_config():
     swept = with_chart(mpm.load(SLAB | {"sweep": {"axes": {"beta": [1, 10], "grid.cell": [0.25, 0.5], "method.offset": [[0.0], [0.3]]}}})).chart
     assert len(swept.methods) == 2 and next(iter(swept.methods.values())).refine["cell"]["grid.cell"] == (0.5, 0.25)
     assert len(next(iter(with_chart(mpm.load(SLAB), quick=True).chart.refine["cell"].values()))) == 3
+
+
+def test_the_command_says_the_answer_and_draws(tmp_path, capsys):
+    """From the shell: exit code, one JSON document with the answer, the picture; a wrong chart is told at its place."""
+    from mpm_cli.main import main
+
+    config = tmp_path / "slab.yaml"
+    config.write_text(json.dumps(SLAB | {"chart": {"scale": 1, "repeats": 1, "methods": {"rigid": {}}, "refine": {"cell": {"grid.cell": [0.5, 0.25]}}}}))
+    assert main(["chart", str(config), "--quick", "--json", "-j", "1", "-o", str(tmp_path / "out")]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["counts"]["ok"] == 2 and "for 1 %: rigid" in told["answer"][1]
+    assert (tmp_path / "out" / "chart.png").exists() and told["dataset"].endswith("chart.nc")
+    config.write_text(json.dumps(SLAB | {"chart": {"methods": {"a": {"set": {"grid.cel": 1}}}, "refine": {"cell": {"grid.cell": [0.5]}}}}, indent=1))
+    assert main(["chart", str(config)]) == 2
+    assert "chart.methods.a" in capsys.readouterr().err
