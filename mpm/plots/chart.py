@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, figure, heading, legend_below, save, styled
+from mpm.plots.words import wrapped
 
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "<", ">", "h")
 PEER = ("*", "p")
@@ -120,7 +121,7 @@ def finish(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
     load, rounds = data["load"].values, data.sizes["round"]
     said = f"least of {rounds} rounds (bars: to the median; load of the machine {load.min():.1f} to {load.max():.1f})"
     ax.set_xlabel(f"processor time of {data.attrs.get('time_of', 'a run')}, {said}")
-    ax.set_ylabel(f"{data['relative_error'].attrs.get('long_name', 'error')}"[:90])
+    ax.set_ylabel(wrapped(str(data["relative_error"].attrs.get("long_name", "error")), 66))
     guides(ax)
 
 
