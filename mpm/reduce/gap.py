@@ -2,7 +2,7 @@
 
 Temperatures   the largest difference over time, as a share of the scene's driving difference
 Times to reach relative to the time itself; reached in one run alone is infinitely far apart
-All else       the largest difference over time, relative to how much the quantity changes in the full run (to its size where it does not change)
+All else       the largest difference over time, relative to how much the quantity changes in the full run, at least to a thousandth of its size
 """
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 from mpm.reduce.offers import Asked, Offer, asked, bare, crossing, driving
 
 COARSER = (2, 3, 4)  # a pilot's cell over the config's
+STEADY = 1e-3
 CAUTION = 1.5  # a pilot's difference is multiplied by it
 
 
@@ -38,8 +39,8 @@ def apart(full: Any, small: Any, name: str, span: float) -> float:
     scale = float(np.ptp(a))
     if name.startswith("temperature_"):
         scale = span or scale
-    elif scale == 0:
-        scale = float(np.max(np.abs(a)))
+    else:
+        scale = max(scale, STEADY * float(np.max(np.abs(a))))
     return 0.0 if most == 0 else most / scale if scale > 0 else math.inf
 
 

@@ -55,7 +55,7 @@ def ball():
         "bodies": {"b": {"shape": {"ball": {"centre": [0.5, 0.5, 0.4], "radius": 0.25}}, "material": "m", "velocity": [0, 0, -2]}},
         "materials": {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}},
         "walls": {"bottom": "contact"},
-        "time": {"end": 0.02},
+        "time": {"end": 0.12},
         "output": {"every": 0.01, "observables": ["position.mean_z", "energy.kinetic"]},
     }
 
