@@ -8,7 +8,7 @@ larger one, the full model last. All of it follows from the point's own values, 
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from mpm.outcome import Outcome
@@ -22,6 +22,7 @@ PHYSICS = {"rigid": rigid, "no flow": no_flow, "no heat": no_heat, "one way": on
 DIRECTIONS = {"axisymmetric": axisymmetric, "fewer directions": fewer}
 MENU = PHYSICS | DIRECTIONS | {"lumped": lumped}
 HOPELESS = 30.0  # an estimate so many times the tolerance is not worth a pilot
+LATE = "time: "
 PILOT = 0.3  # of the full model's time: what a pilot may cost
 
 
@@ -38,10 +39,11 @@ class Said:
 
 @dataclass(frozen=True)
 class Taken:
-    """A reduction that is taken."""
+    """A reduction that is taken; `key` is its name in the menu."""
 
     offer: Offer
     said: Said
+    key: str = ""
 
 
 def offered(name: str, experiment: Any, left: float) -> Offer | str:
@@ -61,7 +63,7 @@ def judged(experiment: Any, name: str, left: float, run: Callable | None) -> Tak
         return Said(name, "", None, "", offer)
     error, by = offer.error, "symmetry" if offer.error == 0 else "estimate"
     if error is not None and error <= left:
-        return Taken(offer, Said(offer.name, offer.dropped, error, by))
+        return Taken(offer, Said(offer.name, offer.dropped, error, by), name)
     why = "no estimate" if error is None else f"estimated error {error:.2g}"
     if run is None or left <= 0 or (error is not None and error > HOPELESS * left):
         return Said(offer.name, offer.dropped, error, by, why)
@@ -69,7 +71,7 @@ def judged(experiment: Any, name: str, left: float, run: Callable | None) -> Tak
         return Said(offer.name, offer.dropped, error, by, f"{why}, and a pilot would cost as much as the run")
     piloted, trouble = pilot(experiment, lambda rough: offered(name, rough, left), run)
     if piloted <= left:
-        return Taken(offer, Said(offer.name, offer.dropped, piloted, "pilot"))
+        return Taken(offer, Said(offer.name, offer.dropped, piloted, "pilot"), name)
     return Said(offer.name, offer.dropped, piloted, "pilot", trouble or f"{why}; a pilot differs by {piloted:.2g}")
 
 
@@ -127,6 +129,10 @@ def smallest(experiment: Any, run: Callable) -> Any:
     try:
         for chain in candidates(experiment, tolerance, attempt, passed):
             done, predicted, why = tried(experiment, chain, tolerance, attempt)
+            if why.startswith(LATE):
+                predicted, trouble = whole(experiment, chain, attempt)
+                chain = [replace(one, said=replace(one.said, by="pilot")) for one in chain]
+                why = "" if predicted <= tolerance else f"{why}, {trouble or f'and a pilot differs by {predicted:.2g}'}"
             if not why:
                 break
             doubts.append(Said(" + ".join(one.offer.name for one in chain), "", predicted, "run", why))
@@ -170,8 +176,38 @@ def tried(experiment: Any, chain: list[Taken], tolerance: float, run: Callable) 
         return done, predicted, f"it does not give {', '.join(lost)}"
     name, shift = widest(shifts(done, experiment, predicted, driving(experiment)))
     if shift > tolerance:
-        return done, predicted, f"{name} could be off by {shift:.2g}" if math.isfinite(shift) else f"{name} may or may not be reached"
+        return done, predicted, f"{LATE}{name} could be off by {shift:.2g}" if math.isfinite(shift) else f"{LATE}{name} may or may not be reached"
     return done, max(predicted, shift), ""
+
+
+def whole(experiment: Any, chain: list[Taken], run: Callable) -> tuple[float, str]:
+    """A pilot of a whole chain: (what it differs by, why there is none)."""
+    if not worthwhile(experiment):
+        return math.inf, "and a pilot would cost as much as the run"
+
+    def follow(rough: Any) -> Offer | str:
+        offers: list[Offer] = []
+        for one in chain:
+            found = offered(one.key, offers[-1].experiment if offers else rough, 1.0)
+            if isinstance(found, str):
+                return found
+            offers.append(found)
+        return Chained(offers[-1].name, "", offers[-1].experiment, None, offers=tuple(offers))
+
+    return pilot(experiment, follow, run)
+
+
+@dataclass(frozen=True)
+class Chained(Offer):
+    """Several reductions as one."""
+
+    offers: tuple[Offer, ...] = ()
+
+    def back(self, run: Any) -> Any:
+        """Through all of them."""
+        for one in reversed(self.offers):
+            run = one.back(run)
+        return run
 
 
 def said_of(result: Outcome) -> str:

@@ -15,6 +15,7 @@ from mpm.reduce.offers import Offer, asked, bare, entries, loaded, only_body, re
 from mpm.scene.scales import Scales, scales
 
 SIDES = {1: (("left", "right"),), 2: (("left", "right"), ("bottom", "top")), 3: (("left", "right"), ("front", "back"), ("bottom", "top"))}
+SAMPLED = 0.15  # of a squared cell over the way inside: extremes are looked for at points half a cell apart or less
 ROUND = 0.2  # of a squared cell over the radius: by how much the two grids may differ
 THICK = 2  # cells of the slice that stands for a plane round body
 AXES = "xyz"
@@ -48,13 +49,15 @@ def fewer(experiment: Any, left: float) -> Offer | str:
     if not given:
         return "nothing is exchanged"
     errors = [side_error(experiment, one, axis) for axis in range(dimension)]
+    extremes = want.everything or {"temperature_min", "temperature_max"} & set(want.names)
+    sampled = SAMPLED * (experiment.grid.cell / one.reach) ** 2 if extremes and one.reach > 0 else 0.0
     ranked = sorted(range(dimension), key=lambda axis: -errors[axis])
     offers = []
     for count in range(1, dimension):
         kept = sorted(ranked[:count])
         offers.append((sum(errors[axis] for axis in ranked[count:]), kept))
-    error, kept = next(((error, kept) for error, kept in offers if error <= left), min(offers))
-    return along(experiment, name, body, kept, error)
+    error, kept = next(((error, kept) for error, kept in offers if error + sampled <= left), min(offers))
+    return along(experiment, name, body, kept, error + sampled)
 
 
 def along(experiment: Any, name: str, body: Any, kept: list[int], error: float) -> Offer:

@@ -1,9 +1,9 @@
 """Physics that a scene names and does not need: motion, flow, heating by deformation, heat itself.
 
 rigid    heat is asked for and the body hardly moves: geometry off by a strain e changes Fourier and Biot numbers by 2 e and e, and temperatures by at most
-         0.4 of that; error 3 e is an upper estimate. Added are the heat of elastic volume change, and what the particles' own grid is off by: 0.3/n^2 with
-         n cells to the middle times Bi/(1 + Bi) (physics.md 11 at any offset: slab of Bi = 10, n = 8 and 16, 4.1e-3 and 1.0e-3; disc of Bi = 10 and 1,
-         n = 12, 9.3e-4 and 5.0e-4); no estimate for transfers that are not affine
+         0.4 of that; error 3 e is an upper estimate. Added are the heat of elastic volume change, and what the particles' own grid is off by:
+         0.06 (h/d)^2 Bi/(1 + Bi), d the depth that heat has reached at the first output (at most 0.45 of the way inside), Bi = beta d/kappa. At Fo = 0.2 that
+         is 0.3/n^2 for a held surface; physics.md 11 has 4.1e-3 and 1.0e-3 at n = 8 and 16 for a slab of Bi = 10. No estimate for transfers not affine
 no flow  upper estimates of the stress stay below yield; looked at again in the elastic run
 one way  deformation heats by gamma Theta tr(eps)/(R0 alpha), and stiffens waves by eps_c/2, which adds up over their transits
 no heat  nothing of heat is asked for, and neither expansion nor a law of temperature lets it act on motion
@@ -16,7 +16,8 @@ from mpm.reduce.offers import Offer, asked, bare, loaded, refused
 from mpm.scene.groups import loads, strains, warming
 from mpm.scene.scales import Scales, scales
 
-STRAIN, PARTICLES, NEAR = 3.0, 0.3, 2.0  # errors a strain and a squared cell over the way inside; cells between bodies that feel each other
+STRAIN, LAYER, FULL = 3.0, 0.06, 0.45  # errors a strain, and a squared cell over the layer; the deepest layer, of the way inside
+NEAR = 2.0  # cells between bodies that feel each other
 AFFINE = ("apic", "affine_flip")
 HEAT_METHOD = ("offset", "rigid")
 
@@ -58,16 +59,20 @@ def moved(experiment, one: Scales) -> float | None:
     heating = experiment.materials[experiment.bodies[one.name].material].heating
     if type(experiment.method.temperature).kind not in AFFINE:
         return None
-    error = STRAIN * sum(strains(experiment, one).values()) + PARTICLES * (experiment.grid.cell / (one.reach or one.length)) ** 2 * steep(one)
+    error = STRAIN * sum(strains(experiment, one).values()) + particles(experiment, one)
     if heating is not None and heating.elastic is not None:
         error += warming(experiment, one)
     return error
 
 
-def steep(one: Scales) -> float:
-    """Bi/(1 + Bi) with the way inside: how steep the temperature is at the surface, of what a held surface makes of it. 1 where a flux is given."""
-    biot = one.beta * one.reach / one.kappa[0] if one.exchanges and one.kappa[0] > 0 else math.inf
-    return biot / (1 + biot) if math.isfinite(biot) else 1.0
+def particles(experiment: Any, one: Scales) -> float:
+    """What particles are off by in a layer that heat has just entered, as a share of the driving difference."""
+    if one.kappa[0] <= 0:
+        return 0.0
+    first = min(experiment.output.every, experiment.time.end)
+    layer = min(math.sqrt(one.kappa[0] * first / (one.density * one.alpha[1])), FULL * (one.reach or one.length))
+    biot = one.beta * layer / one.kappa[0] if one.exchanges else math.inf
+    return min(1.0, LAYER * (experiment.grid.cell / layer) ** 2 * (biot / (1 + biot) if math.isfinite(biot) else 1.0))
 
 
 def near(experiment) -> bool:

@@ -29,7 +29,8 @@ def gentle(dimension):
 def elastic(**material):
     """The block of two directions, stiff enough to stay where it is."""
     config = box(2)
-    solid = {"density": 1000, "heat": HEAT, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}, "expansion": {"linear": {"coefficient": 1e-6, "reference": 300}}}
+    heat = {"fourier": {"kappa": 5.0, "alpha": 2500.0}}
+    solid = {"density": 1000, "heat": heat, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}, "expansion": {"linear": {"coefficient": 1e-6, "reference": 300}}}
     config["materials"]["m"] = solid | material
     config["grid"]["cell"], config["time"]["end"], config["output"]["every"] = 0.005, 2.0, 0.5
     config["output"] = {"every": 0.5, "probes": {"c": [0.025, 0.037]}}
