@@ -47,7 +47,7 @@ def heat_scale(experiment, run):
     return max(abs(run.series["heat_exchanged"]).max(), abs(run.series["heat_total"]).max(), held * spread * run.series.get("mass_total", [0.0])[0])
 
 
-SLOW = ("verification", "stability", "studies")  # a compilation each
+SLOW = ("verification", "stability", "studies", "reduction")  # a compilation each
 SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW else []) for path in CONFIGS]
 
 
