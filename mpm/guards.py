@@ -4,8 +4,9 @@ block     every block of steps: every field finite, every particle on the grid; 
           OVERSHOOT of their data (a warning from NOTICEABLE on: FLIP's noise beside a cold surface reaches 0.29, APIC's slopes 0.05)
 frame     every output time: no energy from nowhere (GROWTH); particles less than a cell apart
 explain   after a failure: which field of which particle was first, and what to do: the step against the limits that held
-Cost      0.2 to 0.5 % of a run (2 500 particles in 2-D: pytest -m slow tests/test_guards.py).  Fails when: a scene heats itself (then only absolute zero bounds temperatures), or it
-has thermal stress or sources (then energy may grow, and is not judged).
+Cost      0.2 to 0.5 % of a run (2 500 particles in 2-D: pytest -m slow tests/test_guards.py)
+Fails when: a scene heats itself (then only absolute zero bounds temperatures); it has thermal stress, loads or sources (then energy may grow, and is not
+judged); a body folds on to itself (a hole that closes or opens is no spacing)
 """
 
 import math

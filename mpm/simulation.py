@@ -21,7 +21,7 @@ from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
-from mpm.integrate.timestep import Limits, limits
+from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
@@ -194,7 +194,8 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         one.write(scene.space, body, clock.time, dt)
     if not all(one.steady for _, one in around):
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    substeps = max(1, math.ceil(dt / (now.substep() * scene.safety) * (1 - 1e-9)))
+    ratio = dt / (now.substep() * scene.safety) * (1 - 1e-9)
+    substeps = 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
     implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
     clock.heated = None if implicit else (dt / substeps, now.substep(), "heat" if len(now.heat) > 1 else next(iter(now.heat)))
     for body in scene.bodies:

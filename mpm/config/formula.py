@@ -16,6 +16,8 @@ ALLOWED = f"+ - * / **, numbers, x, pi, and {', '.join(FUNCTIONS)}"
 class Formula(Condition):
     """Numbers, x, pi, + - * / ** and a few functions; call it with x, a number or an array."""
 
+    what = "formula"
+
     def __call__(self, x: Any) -> Any:
         with np.errstate(all="ignore"):
             return self.run({"x": np.asarray(x, dtype=float), "pi": math.pi})

@@ -42,7 +42,7 @@ class Figure:
 
     def draw(self) -> Any:
         """All panels, and a legend that holds for all of them."""
-        columns = min(COLUMNS, len(self.panels))
+        columns = 3 if len(self.panels) in (5, 6, 9) else min(COLUMNS, len(self.panels))
         rows = math.ceil(len(self.panels) / columns)
         fig = figure(str(self.root.attrs["title"]), 0.9 + (3.6 if columns > 2 else 4.4) * rows)
         axes = fig.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)

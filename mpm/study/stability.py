@@ -168,7 +168,7 @@ def judge(asked: Map, store: Store, run_id: str, line: dict, value: float) -> Ve
     record, stability = store.load(run_id, fields=False), asked.stability
     beyond, outcome = line["status"] != OK, line["outcome"] or line["error"].split(":")[0]
     for name, most in stability.beyond.items():
-        if not beyond and not record.finals.get(name, math.nan) <= most:
+        if not beyond and not abs(record.finals.get(name, math.nan)) <= most:
             beyond, outcome = True, f"{name} above {most:g}"
     return Verdict(run_id, beyond, outcome, growth(stability, record, value))
 

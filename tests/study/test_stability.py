@@ -1,0 +1,94 @@
+"""`mpm stability`: the boundary is found, refined and written; the same command again runs nothing; mistakes are told where they stand."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import mpm
+from mpm.config.condition import ConditionError
+from mpm.config.formula import Formula
+from mpm.sweep.engine import Options
+
+POINT = {
+    "title": "step of the flow",
+    "grid": {"dimension": 0},
+    "bodies": {"body": {"shape": {"point": {"strain": {"xx": -2.33333e-3, "yy": -1.33333e-3, "zz": -1.33333e-3}}}, "material": "solid"}},
+    "materials": {"solid": {"density": 1000, "elastic": {"hencky": {"lam": 2.22222e5, "mu": 1.66667e5}},
+                            "flow": {"ellipse": {"M": 1000, "p0": 0.8, "eta": 3.33333e5}}}},
+    "loading": [{}],
+    "time": {"end": 2, "step": 0.1},
+    "output": {"every": 2},
+    "exact": {"relaxation": {}},
+    "stability": {
+        "across": {"eta": [5e5, 1e6]},
+        "along": {"time.step": {"log": [0.01, 2, 4]}},
+        "panels": {"clipped": {"map": "clipped"}},
+        "resolution": 0.1,
+        "beyond": {"error_relative": 0.01},
+        "lines": [{"label": "first order", "formula": "0.02*x/3.33e5"}],
+    },
+}  # fmt: skip
+
+
+def computed(out, **changes):
+    from mpm.study.stability import run
+
+    experiment = mpm.load(POINT | {"stability": POINT["stability"] | changes})
+    return run(experiment, out, Options(jobs=0), told=lambda text: None)
+
+
+def test_a_boundary_is_bracketed_and_refined_and_the_map_goes_on(tmp_path):
+    done = computed(tmp_path)
+    tree = xr.open_datatree(done.dataset, engine="h5netcdf")
+    within, beyond = tree["/"].within.values, tree["/"].beyond.values
+    assert np.all(within < beyond) and np.all(beyond / within < 1.12)
+    assert 1.2 < tree["/"].boundary.values[0, 1] / tree["/"].boundary.values[0, 0] < 2.0  # longer relaxation, longer steps
+    points = tree["points"].dataset
+    assert len(points.entry) == done.ran < 2 * 20  # far fewer than a grid of that fineness
+    assert set(points.outcome.values[points.is_beyond.values == 1]) == {"error_relative above 0.01"}
+    assert "measured over theory" in str(tree.attrs["sentences"])
+    assert (tmp_path / "sweep.nc").exists()
+    assert computed(tmp_path).ran == 0
+    finer = computed(tmp_path, resolution=0.02)
+    assert 0 < finer.ran < done.ran
+    tree.close()
+
+
+def test_the_figure_is_drawn(tmp_path):
+    from mpm.plots.stability import draw
+    from mpm.plots.style import save
+    from mpm.sweep.api import tree_of
+
+    figure = draw(tree_of(computed(tmp_path).dataset))
+    assert save(figure, tmp_path / "map.png").stat().st_size > 10_000
+    assert [ax.get_title(loc="left") for ax in figure.axes] == ["clipped"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"across": {"etta": [1]}}, "stability.across.etta"),
+        ({"panels": {"one": {"mapp": "radial"}}}, "stability.panels.one.mapp"),
+        ({"lines": [{"label": "a", "formula": "__import__('os')"}]}, "a formula may not hold"),
+        ({"lines": [{"label": "a", "formula": "x +"}]}, "this is no formula"),
+        ({"lines": [{"label": "a", "formula": "x", "panels": ["none"]}]}, "there is no panel 'none'"),
+        ({"across": {"time.step": [1, 2]}}, "the same parameter"),
+        ({"along": {"eta": [1e5, 1e6]}, "across": {"p0": [1, 2]}, "steps": 100}, "no time step"),
+    ],
+)
+def test_what_is_wrong_is_told_where_it_stands(changes, said):
+    with pytest.raises(mpm.ConfigError, match=said.replace("(", r"\(")):
+        mpm.load(POINT | {"stability": POINT["stability"] | changes})
+
+
+def test_a_map_does_not_change_what_a_point_is():
+    assert mpm.load(POINT).run_id == mpm.load({name: part for name, part in POINT.items() if name != "stability"}).run_id
+
+
+def test_formulas_are_walked_not_run():
+    assert Formula("1/(1/0.5 + x/1.5)")(np.array([0.0, 1.5])) == pytest.approx([0.5, 1 / 3])
+    assert Formula("2/3*(1 - max(1 - log(2*x), 0)**1.5)")(2.0) == pytest.approx(2 / 3)
+    assert np.isnan(Formula("sqrt(x)")(-1.0))
+    for text in ("y", "x > 1", "x.__class__", "'a'", "x and 1", "not x", "sqrt(x, 2)", "open(x)", "x if x else 1", "[x]"):
+        with pytest.raises(ConditionError):
+            Formula(text)
