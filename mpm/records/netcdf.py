@@ -164,10 +164,12 @@ def write_whole(path: Path | str, data: bytes) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make the names in a folder durable."""
+    """Make the names in a folder durable. OSError names it."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        raise OSError(error.errno, f"cannot make its entries durable: {error.strerror}", str(folder)) from error
     finally:
         os.close(descriptor)
 

@@ -1,5 +1,6 @@
 """Lock: one writer a folder, held with flock in OUT/lock: the kernel releases it when its owner dies. The file says who holds it."""
 
+import contextlib
 import fcntl
 import json
 import os
@@ -38,12 +39,18 @@ class Lock:
                 who = said_owner(owner(self.path.parent))
                 raise Refused(f"{self.path.parent} is in use by {who}; wait for it, or choose another folder with --out") from None
         self.descriptor, self.dead = descriptor, said_by(descriptor)
-        os.ftruncate(descriptor, 0)
-        os.pwrite(descriptor, json.dumps({"pid": os.getpid(), "host": platform.node(), "since": now(), **self.more}).encode(), 0)
+        text = json.dumps({"pid": os.getpid(), "host": platform.node(), "since": now(), **self.more}).encode()
+        try:
+            os.ftruncate(descriptor, 0)
+            os.pwrite(descriptor, text, 0)
+        except OSError as error:
+            os.close(descriptor)
+            raise OSError(error.errno, f"cannot write {len(text)} bytes: {error.strerror}", str(self.path)) from error
         return self
 
     def __exit__(self, *_: object) -> None:
-        os.ftruncate(self.descriptor, 0)
+        with contextlib.suppress(OSError):  # the disk may fail by now: the next then hears of an owner that died, which does no harm
+            os.ftruncate(self.descriptor, 0)
         os.close(self.descriptor)
 
 

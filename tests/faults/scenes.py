@@ -25,5 +25,5 @@ def many(count):
     return config(np.round(np.linspace(0.01, 10.0, count), 6).tolist())
 
 
-def go(data, out, jobs=0, **more):
-    return execute(load(data), out, Options(jobs=jobs, runner="fake_runner", **more))
+def go(data, out, jobs=0, reporter=None, **more):
+    return execute(load(data), out, Options(jobs=jobs, runner="fake_runner", **more), reporter)
