@@ -4,8 +4,10 @@ Numba's on-disk cache does not notice that a callee in another file changed, so 
 every source file of the package and of the versions that matter. It is private (0700). Everything compiled goes through here.
 """
 
+import contextlib
 import functools
 import hashlib
+import io
 import os
 import platform
 import tempfile
@@ -14,6 +16,7 @@ from pathlib import Path
 import numba
 import numpy as np
 from numba import config, njit
+from numba.core.caching import IndexDataCacheFile
 from numba.extending import overload
 
 # No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
@@ -52,11 +55,51 @@ CACHE = cache_folder()
 config.CACHE_DIR = str(CACHE)
 
 
+class Sealed(IndexDataCacheFile):
+    """Numba's cache files, each with its SHA-256 behind it, each entry with its key: what was cut, or another process wrote over, is compiled anew.
+
+    A cache that cannot be written (a full disk) costs the next process a compilation, not this one its run.
+    """
+
+    @contextlib.contextmanager
+    def _open_for_write(self, filepath):
+        buffer = io.BytesIO()
+        yield buffer
+        data = buffer.getvalue()
+        with contextlib.suppress(OSError), super()._open_for_write(filepath) as file:
+            file.write(data + hashlib.sha256(data).digest())  # readers of pickles stop before it
+
+    def _load_index(self):
+        return super()._load_index() if whole(self._index_path) else {}
+
+    def _load_data(self, name):
+        return super()._load_data(name) if whole(self._data_path(name)) else None
+
+    def save(self, key, data):
+        super().save(key, (key, data))
+
+    def load(self, key):
+        found = super().load(key)
+        return found[1] if found is not None and found[0] == key else None
+
+
+def whole(path: str) -> bool:
+    """Whether a file ends in the hash of what stands before."""
+    try:
+        data = Path(path).read_bytes()
+    except OSError:
+        return False
+    return hashlib.sha256(data[:-32]).digest() == data[-32:]
+
+
 def kernel(function=None, *, inline=False):
     """Compile with the house's flags and cache on disk. `inline=True` for small functions that a kernel calls per particle."""
     if function is None:
         return functools.partial(kernel, inline=inline)
-    return njit(cache=True, **FLAGS, **({"forceinline": True} if inline else {}))(function)
+    made = njit(cache=True, **FLAGS, **({"forceinline": True} if inline else {}))(function)
+    if hasattr(getattr(made, "_cache", None), "_cache_file"):  # there is none under NUMBA_DISABLE_JIT
+        made._cache._cache_file.__class__ = Sealed
+    return made
 
 
 def role(stub=None, *, inline=False):

@@ -50,7 +50,7 @@ def run_point(experiment, beat=None, keeper=None):
         raise ValueError("no such luck\nsecond line")
     if kappa == DIES:
         os.kill(os.getpid(), signal.SIGKILL)
-    if kappa == DIES_ONCE and f"run {kappa}" not in "".join(Path(os.environ["FAKE_MARKS"], "marks").read_text().splitlines(True)[:-1]):
+    if DIES_ONCE <= kappa < EXITS and Path(os.environ["FAKE_MARKS"], "marks").read_text().count(f"run {kappa} ") < 2:
         os.kill(os.getpid(), signal.SIGKILL)
     if kappa == EXITS:
         print("out of tea", file=sys.stderr, flush=True)
