@@ -48,6 +48,9 @@ def run(
     else:
         for name, value in record.finals.items() if record.status == OK else ():
             say(f"  {name} = {value:.9g}", quiet=quiet)
+        if model := record.facts.get("model"):
+            dropped = "; ".join(one["dropped"] for one in model["dropped"])
+            say(f"  model: {model['name']}" + (f", without {dropped}" if dropped else "; nothing can be left out"), quiet=quiet)
         for text in record.facts.get("warnings", ()):
             say(f"  warning: {text}", quiet=quiet)
         say(f"{folder / 'run.nc'}", quiet=quiet)

@@ -17,6 +17,7 @@ from mpm.reduce.gap import pilot, shifts, widest
 from mpm.reduce.lumped import lumped
 from mpm.reduce.offers import Offer, asked, driving, refused
 from mpm.reduce.physics import no_flow, no_heat, one_way, rigid
+from mpm.scene.refusal import SceneError
 
 PHYSICS = {"rigid": rigid, "no flow": no_flow, "no heat": no_heat, "one way": one_way}
 DIRECTIONS = {"axisymmetric": axisymmetric, "fewer directions": fewer}
@@ -81,7 +82,10 @@ def worthwhile(experiment: Any) -> bool:
     from mpm.reduce.gap import rough_form
 
     rough = rough_form(experiment)
-    return rough is not None and estimate(rough)["seconds"] < PILOT * estimate(experiment)["seconds"]
+    try:
+        return rough is not None and estimate(rough)["seconds"] < PILOT * estimate(experiment)["seconds"]
+    except SceneError:
+        return False  # one of them cannot be run
 
 
 def greedy(experiment: Any, names: Any, left: float, run: Callable | None, passed: list[Said]) -> list[Taken]:
@@ -161,10 +165,13 @@ class Stopped(Exception):
 
 def tried(experiment: Any, chain: list[Taken], tolerance: float, run: Callable) -> tuple[Any, float, str]:
     """(Run in the full model's names, predicted error, why it cannot stand) of one candidate."""
-    done = run(chain[-1].offer.experiment if chain else experiment)
     predicted = sum(one.said.predicted for one in chain)
     if not chain:
-        return done, predicted, ""
+        return run(experiment), predicted, ""
+    try:
+        done = run(chain[-1].offer.experiment)
+    except SceneError as error:  # a valid config that no method runs: the larger model may
+        return None, predicted, str(error)
     if not done.outcome.ok:
         return done, predicted, f"it ended early: {said_of(done.outcome)}"
     for one in reversed(chain):

@@ -150,3 +150,23 @@ def test_the_full_model_is_the_default_and_keeps_its_ids(scenes):
     plain, full, chosen = (mpm.load(scenes.box(1) | more) for more in ({}, {"model": "full"}, {"model": "auto"}))
     assert plain.run_id == full.run_id != chosen.run_id
     assert mpm.load(scenes.box(1) | {"model": {"auto": {"tolerance": "1%"}}}).run_id == chosen.run_id
+
+
+def test_a_smaller_config_that_no_method_runs_gives_way(scenes):
+    """The lumped run is refused: the full model answers, and the dataset says why."""
+    from mpm.reduce.choose import smallest
+    from mpm.runner import run_named
+    from mpm.scene.refusal import SceneError
+
+    def run(experiment):
+        if experiment.grid.dimension == 0:
+            raise SceneError("not today")
+        return run_named(experiment)
+
+    done = smallest(mpm.load(scenes.gentle(1) | {"model": "auto"}), run)
+    assert done.outcome.ok and name_of(done) == "full" and why(done, "lumped") == "not today"
+
+
+def test_a_run_that_is_stopped_stays_stopped(scenes):
+    stopped = mpm.run_point(mpm.load(scenes.box(2) | {"model": "auto"}), beat=lambda fraction, when: True)
+    assert stopped.outcome.kind == "budget" and stopped.series == {}
