@@ -71,6 +71,11 @@ def modes(P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.clip(s * s, 0.0, 1.0), U
 
 
+def top(B: np.ndarray) -> float:
+    """Largest eigenvalue of B B^T, from the smaller of the two products."""
+    return float(np.linalg.eigvalsh(B @ B.T if B.shape[0] < B.shape[1] else B.T @ B)[-1])
+
+
 class Cloud:
     """One arrangement of particles on quadratic B-splines; cell and density are 1."""
 
@@ -93,19 +98,19 @@ class Cloud:
         ratio = s / (1.0 + functions(method, s))
         n, parts, strains = B.shape
         seen = (U.T @ B.reshape(n, -1)).reshape(-1, strains)
+        if heat:
+            return max(top(np.sqrt(ratio)[:, None] * seen), 1e-12)  # a lone particle of PIC or FLIP conducts nothing to itself
         gram = seen.T @ (np.repeat(ratio, parts)[:, None] * seen)
-        if not heat:
-            if name not in self.kept:
-                self.kept[name] = B.reshape(-1, strains).T @ B.reshape(-1, strains)
-            gram = self.kept[name] - gram
-        return max(float(np.linalg.eigvalsh(gram)[-1]), 1e-12)  # a lone particle of PIC or FLIP conducts nothing to itself
+        if name not in self.kept:
+            self.kept[name] = B.reshape(-1, strains).T @ B.reshape(-1, strains)
+        return float(np.linalg.eigvalsh(self.kept[name] - gram)[-1])
 
     def heat(self, method: str, gradient: str = "bspline") -> float:
         """Critical dt kappa/(R0 alpha h^2) of a step that ends in a transfer; `grid`: of the nodes alone."""
         g = self.G if gradient == "bspline" else self.L
         B = (self.root[:, None, None] * g * np.sqrt(self.V)[:, None]).reshape(len(self.root), 1, -1)
         if method == "grid":
-            return 2.0 / float(np.linalg.eigvalsh(B[:, 0].T @ B[:, 0])[-1])
+            return 2.0 / top(B[:, 0])
         return 1.0 / self.largest(B, "", method, True)
 
     def strains(self, gradient: str, lam: float, mu: float) -> np.ndarray:
