@@ -19,7 +19,6 @@ from mpm.sweep.executors import BrokenWorkers
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Refused
 
-pytest.importorskip("distributed", reason="the extra mpm[cluster]")
 ROOT = Path(__file__).parents[2]
 TINY = [round(0.01 * k, 2) for k in range(1, 61)]
 
