@@ -4,8 +4,8 @@
 
 1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json, from `python -m mpm.study.figures`).
    Of the numerical methods in them, at the automatic step, the one that reaches the tolerance in the least time, over all of those charts, is taken.
-2  Pilots: the scene itself with ever more cells, each PILOT times the last, until the error is within REACH of the tolerance or below it.
-   Their order p gives the cell:  n* = n (e/(MARGIN tol))^(1/p),  p at most what the last two show.
+2  Pilots: the scene itself with ever more cells, each PILOT times the last, until one keeps the tolerance, or until the error is within REACH of it and the
+   cell that their order p asks for, n* = n (e/(MARGIN tol))^(1/p), is farther than the next two pilots.
 Error     as `mpm chart` has it: against `exact:`; without one, the change of the observables that the config lists (probes, time_to, ...) between pilots
 Cost      the last pilot's time, times the ratio that `mpm.runner.estimate` gives between the two
 Fails when: the scene has an error that no cell removes (a smooth approximation, a sharp latent front); the pilots then do not fall, and the choice says so.
@@ -157,7 +157,9 @@ def refine(experiment: Any, settings: dict[str, Any], tolerance: float) -> tuple
             break
         pilots += gauge.run(cell, L / cell)
         known = [pilot for pilot in pilots if math.isfinite(pilot.error)]
-        if known and known[-1].error <= REACH * tolerance and (len(known) > 1 or known[-1].error <= MARGIN * tolerance):
+        met = known and known[-1].error <= enough(experiment) * tolerance
+        near = len(known) > 1 and known[-1].error <= REACH * tolerance
+        if met or (near and goal(known, tolerance) < known[-1].cell / PILOT**2):  # nearer than that the next pilots are as good as a guess
             return finish(experiment, settings, tolerance, available, known)
         wanted = L / cell * PILOT
     if not pilots:
@@ -168,17 +170,30 @@ def refine(experiment: Any, settings: dict[str, Any], tolerance: float) -> tuple
 def finish(experiment: Any, settings: dict[str, Any], tolerance: float, available: list[float], known: list[Pilot]) -> tuple[float, float, float, list[Pilot]]:
     """From the pilots to the cell."""
     last = known[-1]
-    good = next((pilot for pilot in known if pilot.error <= MARGIN * tolerance), None)
+    good = next((pilot for pilot in known if pilot.error <= enough(experiment) * tolerance), None)
     if good is not None:
         return good.cell, good.error, good.seconds, known
-    before = known[-2]
-    p = math.log(before.error / last.error) / math.log(before.cell / last.cell)
+    p = order(known)
     if p < ORDERS[0]:
-        raise NoChoice(f"the error falls with order {p:.2g} only, from {100 * before.error:.2g} % to {100 * last.error:.2g} %")
-    p = min(p, ORDERS[1])
-    target = last.cell * (MARGIN * tolerance / last.error) ** (1 / p)
-    cell = next(h for h in available if h <= target * (1 + 1e-9))
-    return cell, last.error * (cell / last.cell) ** p, last.seconds * ratio(experiment, settings, cell, last.cell), known
+        raise NoChoice(f"the error falls with order {p:.2g} only, from {100 * known[-2].error:.2g} % to {100 * last.error:.2g} %")
+    cell = next(h for h in available if h <= goal(known, tolerance) * (1 + 1e-9))
+    predicted = last.error * (cell / last.cell) ** min(p, ORDERS[1])
+    return cell, predicted, last.seconds * ratio(experiment, settings, cell, last.cell), known
+
+
+def enough(experiment: Any) -> float:
+    """The part of the tolerance that a pilot's error may take: all of it where the error is known, MARGIN where it is estimated."""
+    return 1.0 if experiment.exact is not None else MARGIN
+
+
+def order(known: list[Pilot]) -> float:
+    """Of the error in the cell, by the last two pilots."""
+    return math.log(known[-2].error / known[-1].error) / math.log(known[-2].cell / known[-1].cell)
+
+
+def goal(known: list[Pilot], tolerance: float) -> float:
+    """The cell at which the error should be MARGIN of the tolerance [m]."""
+    return known[-1].cell * (MARGIN * tolerance / known[-1].error) ** (1 / min(max(order(known), ORDERS[0]), ORDERS[1]))
 
 
 def ratio(experiment: Any, settings: dict[str, Any], cell: float, other: float) -> float:

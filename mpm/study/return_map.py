@@ -40,7 +40,8 @@ def relaxed(p: np.ndarray, q: np.ndarray, p0: np.ndarray, eta: np.ndarray, form:
             over, by_p, by_q = np.maximum(np.abs(p) / (p0 * room) - 1, 0), np.sign(p) / (p0 * room), np.abs(p) * q / (p0 * room**3)
         return np.concatenate([-K * M**2 / eta * over * by_p, -3 * MU * M**2 / eta * over * by_q])
 
-    return solve_ivp(rates, (0.0, 1.0), np.concatenate([p, q]), method="DOP853", rtol=1e-10, atol=1e-12 * M).y[:, -1].reshape(2, -1)
+    with np.errstate(over="ignore", invalid="ignore"):  # trial stages that the integrator rejects
+        return solve_ivp(rates, (0.0, 1.0), np.concatenate([p, q]), method="DOP853", rtol=1e-10, atol=1e-12 * M).y[:, -1].reshape(2, -1)
 
 
 def mapped(e: np.ndarray, p0: np.ndarray, eta: np.ndarray, form: str, steps: int) -> tuple[np.ndarray, float]:
