@@ -15,6 +15,7 @@ from mpm.boundary import directions, extents
 from mpm.guards import Guards, explain
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
+from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
@@ -29,13 +30,13 @@ from mpm.state import Run, Thermal
 from mpm.transfer import wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
-MANY = 8  # explicit heat sub-steps that cost about as much as an implicit step
+MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
 
 @dataclass(frozen=True)
 class HeatMethod:
-    """`kind` auto, explicit or implicit; auto is implicit where a heat step would need more than MANY explicit sub-steps. order 1 or 2 of implicit steps."""
+    """`kind` auto, explicit, stabilised or implicit (of `order`); auto is stabilised, and implicit where a heat step would need more than MANY stages."""
 
     kind: str = "auto"
     order: int = 1
@@ -186,7 +187,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
 
 
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
-    """One heat step of every body that has heat: explicit in as many sub-steps as the limits ask for, or implicit."""
+    """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     if not now.heat:
         return outcome(COMPLETED)
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=False) if one is not None]
@@ -194,10 +195,11 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         one.write(scene.space, body, clock.time, dt)
     if not all(one.steady for _, one in around):
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    ratio = dt / (now.substep() * scene.safety) * (1 - 1e-9)
-    substeps = 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
-    implicit = scene.heat.kind == "implicit" or (scene.heat.kind == "auto" and substeps > MANY)
-    clock.heated = None if implicit else (dt / substeps, now.substep(), "heat" if len(now.heat) > 1 else next(iter(now.heat)))
+    kind, stable = scene.heat.kind, now.substep() * scene.safety
+    ratio = dt / stable * (1 - 1e-9)
+    substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
+    implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
+    clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) > 1 else next(iter(now.heat))) if kind == "explicit" else None
     for body in scene.bodies:
         lost = lost_to_grid(scene, body, buffers[3])
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
@@ -207,6 +209,8 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
             if iterations < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += iterations
+        elif kind != "explicit":
+            gained = heat_chebyshev(scene.space, body, buffers[3], scene.walls, dt, substeps, scene.blend, scene.affine)
         else:
             gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
         clock.exchanged += gained
@@ -218,7 +222,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     clock.heat_steps += 1
     if implicit:
         clock.implicit += 1
-    elif substeps > 1:
+    elif substeps > (1 if kind == "explicit" else 2):
         binding = min(now.heat, key=now.heat.get)
         clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
     return outcome(COMPLETED)

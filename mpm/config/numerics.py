@@ -119,13 +119,19 @@ class ExplicitHeat(Kind):
     kind: ClassVar[str] = "explicit"
 
 
+class StabilisedHeat(Kind):
+    """Explicit steps of order 2, in as many stages as stability asks for (Runge-Kutta-Chebyshev)."""
+
+    kind: ClassVar[str] = "stabilised"
+
+
 class AutoMoving(Kind):
-    """Explicit; implicit where a step would need many explicit sub-steps."""
+    """Stabilised; implicit where a step would need many stages."""
 
     kind: ClassVar[str] = "auto"
 
 
-HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, ImplicitHeat)
+HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, StabilisedHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
 LOCKING: tuple[type[Kind], ...] = (Fbar,)
 BOUNDS: tuple[type[Kind], ...] = (Repair,)

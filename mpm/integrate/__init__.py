@@ -2,6 +2,7 @@
 
 respond.py    a particle's answer to the velocity gradient: strain, flow, stress, heating, and what it scatters next
 heat_step.py  one explicit heat step: scatter, conduct, exchange, gather
+heat_chebyshev.py  the same by stabilised steps of order 2; bounds.py  temperatures kept between their bounds
 heat_implicit.py  the same by conjugate gradients: any step, any beta
 pieces.py     surface pieces during a heat step; surroundings.py  who acts on which of them, hot walls
 sharpen.py    XPIC's extra transfers

@@ -55,7 +55,7 @@ def disc(core, biot, n, speed=1.0):
     return core.experiment(2, grid={"dimension": 2, "size": [3.5, 3.0], "cell": h}, exact={"robin_cylinder": {}}, **config)
 
 
-# Heat steps of PACE h^2. At the automatic 0.15 and Bi = 0.1 the error of the step and APIC's damping, both of order 2 and of opposite sign, nearly cancel
+# Heat steps of PACE h^2. Of Euler's steps at 0.15 and Bi = 0.1 the error of the step and APIC's damping, both of order 2 and of opposite sign, nearly cancel
 # (5e-6 at n = 32) and what is left shows order 1.6; at a quarter of the step damping is alone: 1.8e-4, 5.2e-5, 1.4e-5, 3.7e-6 at n = 8, 16, 32, 64.
 PACES = [(0.1, 0.0375), (1.0, 0.15), (10.0, 0.15)]
 
@@ -82,11 +82,11 @@ def test_slab_refined(core, biot, pace):
 
 def test_disc_across_the_grid(core):
     errors = [error(core, disc(core, 10.0, n), 1.0) for n in (6, 12)]
-    assert core.order(errors) > 1.7 and errors[-1] < 2e-3
+    assert core.order(errors) > 1.7 and errors[-1] < 1.2e-3
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("biot", [1.0, 10.0])
 def test_disc_across_the_grid_refined(core, biot):
     errors = [error(core, disc(core, biot, n), 1.0) for n in (6, 12, 24)]
-    assert core.order(errors) > 1.7 and errors[-1] < 6e-4
+    assert core.order(errors) > 1.7 and errors[-1] < 3e-4
