@@ -67,3 +67,16 @@ def test_a_memory_that_lost_something_is_seen(core, field, monkeypatch):
     experiment = core.experiment(1, {"beta": 5.0, "outside": 300.0}, output=LOOKS, method=core.methods("apic") | {"heat": {"explicit": {}}}, time={"end": 1.0})
     _, wrong = cut(experiment, 3, np.random.default_rng(4))
     assert wrong
+
+
+@pytest.mark.slow
+def test_200_random_cuts_over_all_scenes(table):
+    rng, made, wrong, seen = np.random.default_rng(8), 0, [], 0
+    paths = sorted([*CONFIGS.glob("scenes/*.yaml"), *CONFIGS.glob("verification/*.yaml"), CONFIGS / "smoke.yaml"])
+    for path in paths:
+        whole = mpm.load(path)
+        experiment = mpm.load(path, {}, smoke=True) if "\nsmoke:" in path.read_text(encoding="utf-8") else whole
+        cuts, differ = cut(plan(experiment).cases[0].experiment, -(-200 // len(paths)) + 3, rng)
+        made, seen, wrong = made + cuts, seen + (cuts > 0), wrong + [(path.stem, differ)] * bool(differ)
+    table(f"restart at {made} random cuts over {seen} scenes", f"{len(wrong)} differ in any bit")
+    assert made >= 200 and not wrong
