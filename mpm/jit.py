@@ -23,6 +23,10 @@ from numba.extending import overload
 FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
 
 
+# For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (each costs 20 cycles, and a tuple of
+# arrays has as many as it has fields). So they cannot make arrays, and must not return any.
+INLINE = {"forceinline": True, "_nrt": False}
+
 ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots", "reduce"}  # rooms that compiled code cannot reach (tests/test_layers.py)
 
 
@@ -93,10 +97,10 @@ def whole(path: str) -> bool:
 
 
 def kernel(function=None, *, inline=False):
-    """Compile with the house's flags and cache on disk. `inline=True` for small functions that a kernel calls per particle."""
+    """Compile with the house's flags and cache on disk. `inline=True` for functions that a kernel calls per particle or chunk: see INLINE."""
     if function is None:
         return functools.partial(kernel, inline=inline)
-    made = njit(cache=True, **FLAGS, **({"forceinline": True} if inline else {}))(function)
+    made = njit(cache=True, **FLAGS, **(INLINE if inline else {}))(function)
     if hasattr(getattr(made, "_cache", None), "_cache_file"):  # there is none under NUMBA_DISABLE_JIT
         made._cache._cache_file.__class__ = Sealed
     return made
@@ -117,5 +121,5 @@ def role(stub=None, *, inline=False):
     def pick(*args):
         return laws.registry.get(getattr(args[0], "instance_class", None))
 
-    overload(laws, jit_options=FLAGS | ({"forceinline": True} if inline else {}))(pick)
+    overload(laws, jit_options=FLAGS | (INLINE if inline else {}))(pick)
     return laws

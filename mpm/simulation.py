@@ -20,14 +20,14 @@ from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
-from mpm.integrate.respond import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
 from mpm.state import Run, Thermal
-from mpm.transfer import wants_change
+from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
@@ -154,8 +154,8 @@ def work_arrays(scene: Scene):
     """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, scalars where there is heat."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
     dtype = scene.bodies[0].particles.x.dtype
-    nodes = np.zeros((2, n, D + 1), dtype)
-    force = np.zeros((2, n if wants_change(scene.scheme) else 0, D + 1), dtype)
+    nodes = np.zeros((2, n, columns(D)), dtype)
+    force = np.zeros((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
     rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else IMPLICIT_ROWS
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))

@@ -39,6 +39,12 @@ class Hencky(Kind):
         return self
 
 
+class NeoHookean(Hencky):
+    """Neo-Hookean elasticity: Kirchhoff stress mu (b - 1) + lam J (J - 1). Elastic only, and the cheapest. Moduli as for hencky."""
+
+    kind: ClassVar[str] = "neo_hookean"
+
+
 class Ellipse(Kind):
     """Viscoplastic flow outside the ellipse p^2/p0^2 + q^2 = M^2, with overstress viscosity eta (0: rate-independent)."""
 
@@ -121,7 +127,7 @@ class Heating(Model):
     dissipation: DissipationHeating | None = None
 
 
-ELASTIC: tuple[type[Kind], ...] = (Hencky,)
+ELASTIC: tuple[type[Kind], ...] = (Hencky, NeoHookean)
 FLOW: tuple[type[Kind], ...] = (Ellipse,)
 HEAT: tuple[type[Kind], ...] = (Fourier,)
 EXPANSION: tuple[type[Kind], ...] = (LinearExpansion, ModulusExpansion, SourceExpansion, LatchedExpansion)

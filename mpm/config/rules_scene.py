@@ -98,6 +98,10 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
                 f"materials.{name}.{absent[0]}",
                 on_key=True,
             )
+    if item.elastic is not None and item.elastic.kind == "neo_hookean":
+        for section in ("flow", "expansion"):
+            if getattr(item, section) is not None:
+                yield Finding(("materials", name, section), f"neo_hookean is elastic only: it has no {section}", "elastic: hencky", on_key=True)
     if item.heating is not None and item.heating.elastic is not None and item.expansion is not None and item.expansion.kind == "latched":
         said = "latched expansion is not reversible, so it has no elastic heating"
         yield Finding(("materials", name, "heating", "elastic"), said, "linear, modulus or source", on_key=True)

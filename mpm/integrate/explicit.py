@@ -15,23 +15,25 @@ from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, impose, unfold
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.load import act
-from mpm.integrate.locking import average_all, relax
-from mpm.integrate.respond import CODE, PARTICLE, SPEED, STEP, respond
+from mpm.integrate.locking import any_averages, average_all, relax
+from mpm.integrate.respond import respond
 from mpm.integrate.sharpen import sharpen
+from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
 from mpm.jit import kernel
+from mpm.lanes import EIGHT, below, fma, least, load8, maximum, most, poke, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
-from mpm.transfer import CHUNK, carry, collect, new_chunk, spread, wants_change
+from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick_up, spread, uses_basis_gradient, wants_change
 
 
 @kernel
 def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity, dt, steps, reports):
     """`steps` steps of `dt` of all bodies on one grid.
 
-    nodes, force: (2, n, D + 1), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
+    nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
     boxes (2, 3, 2), walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py. Returns early where a particle fails.
     """
-    chunk = new_chunk(gravity.shape[0], nodes)
+    chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
     change = np.zeros_like(chunk.v)
     shape = extents(space)
     empty(shape, boxes[0])
@@ -69,6 +71,7 @@ def open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, repor
     chunk.L[:] = 0.0
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
+        fetch(body.particles, first, chunk, count)
         respond(space, gradient, body, chunk, first, count, 0.0, dt, report)
         if report[CODE] != 0.0:
             return False
@@ -90,11 +93,11 @@ def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes
 @kernel
 def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, last, report):
     """One body's part of `pass_all`."""
-    x = body.particles.x
+    x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        collect(scheme, space, gradient, x, first, chunk, count, nodes[now], force[now], change)
-        carry(scheme, body.particles, first, chunk, count, change)
+        collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
+        carry(scheme, body.particles, first, chunk, count, change, last)
         relax(body.locking, space, x, first, chunk, count, dt)
         move(space, x, chunk, first, count, dt, report)
         if report[CODE] == 0.0:
@@ -104,7 +107,7 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
             return False
         act(body.source, body, chunk, first, count, dt, dt, report)
         if not last:
-            spread(scheme, space, gradient, x, first, chunk, count, nodes[1 - now], force[1 - now], boxes[1 - now])
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)
     return True
 
 
@@ -151,18 +154,31 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
     unfold(nodes, D, shape, box, walls)
 
 
-@kernel
+@kernel(inline=True)
 def move(space, x, chunk, first, count, dt, report):
     """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
-    shape, inside = extents(space), room(space.basis)
-    for p in range(count):
-        i = first + p
-        speed = 0.0
-        for c in range(x.shape[1]):
-            v = chunk.v[c, p]
-            speed += v * v
-            x[i, c] += dt * v
+    shape, inside, D, n, real = extents(space), room(space.basis), x.shape[1], chunk.m.shape[0], x.dtype.type
+    place, step, speed, good = chunk.place, splat8(real(dt)), splat8(real(0)), splat8(real(1))
+    lay_down(x, first, count, place)
+    for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
+        for c in range(D):
+            poke(chunk.v, c * n + p, 0.0)
+    for p in range(0, count, EIGHT):
+        square = splat8(real(0))
+        for c in range(D):
             # Node i of an array lies at (i - PAD) h.
-            if not (inside - PAD) * space.h < x[i, c] < (shape[c] - 1 - PAD - inside) * space.h and report[CODE] == 0.0:
-                report[CODE], report[PARTICLE] = NON_FINITE if np.isnan(x[i, c]) else LEFT_GRID, i
-        report[SPEED] = max(report[SPEED], speed)
+            low, high = splat8(real((inside - PAD) * space.h)), splat8(real((shape[c] - 1 - PAD - inside) * space.h))
+            v = load8(chunk.v, c * n + p)
+            here = fma(step, v, load8(place, c * n + p))
+            store(place, c * n + p, here)
+            square = fma(v, v, square)
+            good = good * below(low, here) * below(here, high)
+        speed = maximum(square, speed)
+    report[SPEED] = max(report[SPEED], most(speed))
+    pick_up(x, first, count, place)
+    if least(good) < 1.0:
+        for p in range(count):
+            for c in range(D):
+                here = x[first + p, c]
+                if not (inside - PAD) * space.h < here < (shape[c] - 1 - PAD - inside) * space.h and report[CODE] == 0.0:
+                    report[CODE], report[PARTICLE] = NON_FINITE if np.isnan(here) else LEFT_GRID, first + p

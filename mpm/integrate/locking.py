@@ -57,6 +57,31 @@ def average_all(space, gradient, bodies, chunk, nodes, box, walls, dt):
         average(body.locking, space, gradient, body, chunk, nodes, box, walls, dt)
 
 
+@kernel
+def any_averages(bodies):
+    """Whether a body averages."""
+    found = False
+    for body in literal_unroll(bodies):
+        found = found or averages(body.locking)
+    return found
+
+
+@role
+def averages(locking):
+    """Whether this averages."""
+    raise TypeError(f"no averaging by {type(locking).__name__}")
+
+
+@averages.register(NoAverage)
+def _(locking):
+    return False
+
+
+@averages.register(Average)
+def _(locking):
+    return True
+
+
 @role
 def average(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     """Fill the nodal averages of one body from the nodal velocities."""
@@ -94,7 +119,7 @@ def _(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     unfold(total.reshape(-1, 1), 0, shape, box, walls)
 
 
-@role
+@role(inline=True)
 def relax(locking, space, x, first, chunk, count, dt):
     """Give the gathered velocity gradients of a chunk the averaged change of volume; before the particles move."""
     raise TypeError(f"no averaging by {type(locking).__name__}")

@@ -2,25 +2,39 @@
 
 A = dt L;  J <- J det(1 + A);  B <- (1 + A)(1 + B)(1 + A)^T - 1;  eps_i = 1/2 log1p(B_i);  return map;  heating;  tau from eps and the new temperature.
 Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau grad(w), as S (with the MLS gradient S/(sum w d^2), a slope).
-`report` collects what guards and limits need. A particle that cannot answer ends the step with its code (mpm.outcome).
+`report` (its places: strain.py) collects what guards and limits need. A particle that cannot answer ends the step with its code (mpm.outcome).
 """
 
 import math
 
 from mpm.basis import inverse_moment
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.integrate.strain import (
+    CODE,
+    DISSIPATED,
+    GROW,
+    HEATED,
+    HOOP,
+    JACOBIAN,
+    STRAIN,
+    deliver_plane,
+    deliver_volume,
+    fail,
+    guard,
+    strain_plane,
+    strain_volume,
+)  # fmt: skip
 from mpm.jit import kernel, role
-from mpm.materials import FLOW, NoFlow, flow, settled, stress, warmed
-from mpm.outcome import INVERTED, OVERSTRETCHED, RETURN_MAP
+from mpm.lanes import EIGHT, fma, load8, maximum, most, peek, poke, splat8, store
+from mpm.materials import FLOW, Hencky, HenckyWarm, NeoHookean, NoFlow, flow, settled, stress, warmed
+from mpm.outcome import INVERTED, RETURN_MAP
 from mpm.state import Axisymmetric, Line, NoExchange, Plane, Surface, Volume
-from mpm.tensors import compose2, compose3, dilation1, dilation2, dilation3, eigen2, eigen3, push1, push2, push3
+from mpm.tensors import compose2, compose3, dilation1, eigen2, eigen3, push1
 from mpm.transfer import uses_basis_gradient
 
-CODE, PARTICLE, STEP, SPEED, RATE, STRAIN, SWELL, HEATED, DISSIPATED, REPORT = range(10)  # places in the report
-MOST = 0.5  # largest entry of dt grad v
+ACROSS = 4  # row of Chunk.e: stress out of plane
 
-
-@role
+@role(inline=True)
 def respond(space, gradient, body, chunk, first, count, dt, next_dt, report):
     """Update B, J (F, theta) of `count` particles from chunk.L, and fill m, a, A, f, S of the chunk for the next scatter with step `next_dt`."""
     raise TypeError(f"no response for {type(space).__name__}")
@@ -69,34 +83,22 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
 
 
 @kernel(inline=True)
-def fail(report, code, i):
-    """Keep the first failure."""
-    if report[CODE] == 0.0:
-        report[CODE], report[PARTICLE] = code, i
-
-
-@kernel(inline=True)
-def guard(report, largest, grow, J, least, i):
-    """Refuse what no smaller model explains: NaN falls through every comparison here, hence the `not`."""
-    report[RATE] = max(report[RATE], largest)
-    report[SWELL] = max(report[SWELL], J)
-    if not grow > -1.0 or not least > -1.0:
-        fail(report, INVERTED, i)
-    elif not largest < MOST or not 1e-3 < J < 1e3:
-        fail(report, OVERSTRETCHED, i)
-
-
-@kernel(inline=True)
-def load(particles, chunk, i, p, D, factor):
-    """Momentum, its slope, and the impulse `factor` tau of particle i for the next scatter; tau stands in chunk.S."""
-    m = particles.m[i]
-    chunk.m[p] = m
-    for c in range(D):
-        chunk.a[c, p] = m * particles.v[i, c]
-        chunk.f[c, p] = 0.0
-        for d in range(D):
-            chunk.A[c, d, p] = m * particles.C[i, c, d]
-            chunk.S[c, d, p] *= factor
+def load_chunk(space, gradient, particles, chunk, first, count, dt):
+    """Momentum m v, its slope m C and the impulse -dt V0 tau for the next scatter; tau stands in chunk.S."""
+    D, n, real = chunk.a.shape[0], chunk.m.shape[0], chunk.m.dtype.type
+    scale = real(-dt) if uses_basis_gradient(gradient) else real(-dt * inverse_moment(space.basis) / (space.h * space.h))
+    weight = chunk.f[0]  # V0, until the last loop
+    for p in range(count):
+        poke(chunk.m, p, peek(particles.m, first + p))
+        poke(weight, p, scale * peek(particles.V0, first + p))
+    for p in range(0, count, EIGHT):
+        m, factor = load8(chunk.m, p), load8(weight, p)
+        for c in range(D):
+            store(chunk.a, c * n + p, m * load8(chunk.u, c * n + p))
+        for k in range(D * D):
+            store(chunk.A, k * n + p, m * load8(chunk.U, k * n + p))
+            store(chunk.S, k * n + p, factor * load8(chunk.S, k * n + p))
+    chunk.f[:] = 0.0
 
 
 @role
@@ -127,7 +129,6 @@ def _(surface, chunk, i, p, dt):
 @respond.register(Line)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
-    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
     for p in range(count):
         i = first + p
         A = (dt * chunk.L[0, 0, p],)
@@ -145,91 +146,149 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
         particles.B[i, 0], particles.B[i, 1], particles.B[i, 2] = B
         carry_surface(body.surface, chunk, i, p, dt)
         chunk.S[0, 0, p] = t1
-        load(particles, chunk, i, p, 1, -next_dt * particles.V0[i] * scale)
-
-
-@kernel(inline=True)
-def respond_plane(space, gradient, body, chunk, i, p, hoop, dt, next_dt, report):
-    """One particle of a plane or axisymmetric body; `hoop` is the rate v_r/r. Returns V0 tau_zz (out of plane, hoop)."""
-    particles = body.particles
-    A = (dt * chunk.L[0, 0, p], dt * chunk.L[0, 1, p], dt * chunk.L[1, 0, p], dt * chunk.L[1, 1, p], dt * hoop)
-    grow = dilation2(A)
-    B = push2((particles.B[i, 0], particles.B[i, 1], particles.B[i, 2], particles.B[i, 3]), A)
-    l1, l2, c, s = eigen2(B[0], B[1], B[3])
-    J = particles.J[i] + particles.J[i] * grow
-    guard(report, max(abs(A[0]), abs(A[1]), abs(A[2]), abs(A[3]), abs(A[4])), grow, J, min(l1, l2, B[2]), i)
-    if report[CODE] != 0.0:
-        return 0.0
-    particles.J[i] = J
-    e1, e2, e3 = 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(B[2])
-    e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, grow, dt, report)
-    if flows(body.flow):
-        xx, yy, xy = compose2(math.expm1(2.0 * e1), math.expm1(2.0 * e2), c, s)
-        B = (xx, yy, math.expm1(2.0 * e3), xy)
-    particles.B[i, 0], particles.B[i, 1], particles.B[i, 2], particles.B[i, 3] = B
-    carry_surface(body.surface, chunk, i, p, dt)
-    xx, yy, xy = compose2(t1, t2, c, s)
-    chunk.S[0, 0, p], chunk.S[0, 1, p], chunk.S[1, 0, p], chunk.S[1, 1, p] = xx, xy, xy, yy
-    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
-    load(particles, chunk, i, p, 2, -next_dt * particles.V0[i] * scale)
-    return particles.V0[i] * t3
+    load_chunk(space, gradient, particles, chunk, first, count, next_dt)
 
 
 @respond.register(Plane)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
-    for p in range(count):
-        respond_plane(space, gradient, body, chunk, first + p, p, 0.0, dt, next_dt, report)
-        if report[CODE] != 0.0:
-            return
+    strain_plane(body.particles, chunk, first, count, dt, report)
+    if report[CODE] == 0.0:
+        react_plane(body.elastic, body, chunk, first, count, dt, report)
+        load_chunk(space, gradient, body.particles, chunk, first, count, next_dt)
 
 
 @respond.register(Axisymmetric)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
-    x = body.particles.x
+    x, V0 = body.particles.x, body.particles.V0
     for p in range(count):
-        i = first + p
-        before = x[i, 0] - dt * chunk.v[0, p]  # r at which the rates were gathered: the position has moved on already
-        pull = respond_plane(space, gradient, body, chunk, i, p, chunk.v[0, p] / before, dt, next_dt, report)
-        if report[CODE] != 0.0:
-            return
-        chunk.f[0, p] = -next_dt * pull / x[i, 0]
+        before = x[first + p, 0] - dt * chunk.v[0, p]  # r at which the rates were gathered: the position has moved on already
+        chunk.e[HOOP, p] = chunk.v[0, p] / before
+    strain_plane(body.particles, chunk, first, count, dt, report)
+    if report[CODE] == 0.0:
+        react_plane(body.elastic, body, chunk, first, count, dt, report)
+        load_chunk(space, gradient, body.particles, chunk, first, count, next_dt)
+        for p in range(count):
+            chunk.f[0, p] = -next_dt * V0[first + p] * chunk.e[ACROSS, p] / x[first + p, 0]
 
 
 @respond.register(Volume)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
-    particles = body.particles
-    e, L, b = chunk.e, chunk.L, particles.B
-    scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / (space.h * space.h)
+    strain_volume(body.particles, chunk, first, count, dt, report)
+    if report[CODE] == 0.0:
+        react_volume(body.elastic, body, chunk, first, count, dt, report)
+        load_chunk(space, gradient, body.particles, chunk, first, count, next_dt)
+
+
+@role(inline=True)
+def react_plane(elastic, body, chunk, first, count, dt, report):
+    """From trial strain to the particles' B and to tau in chunk.S, out of plane in chunk.e[ACROSS], of a plane or axisymmetric body."""
+    raise TypeError(f"no response of {type(elastic).__name__}")
+
+
+@role(inline=True)
+def react_volume(elastic, body, chunk, first, count, dt, report):
+    """The same in three directions."""
+    raise TypeError(f"no response of {type(elastic).__name__}")
+
+
+@react_plane.register(Hencky)
+@react_plane.register(HenckyWarm)
+def _(elastic, body, chunk, first, count, dt, report):
+    e, S = chunk.e, chunk.S
     for p in range(count):
         i = first + p
-        A = increment3(L, p, dt)
-        e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p] = push3((b[i, 0], b[i, 1], b[i, 2], b[i, 3], b[i, 4], b[i, 5]), A)
+        l1, l2, c, s = eigen2(e[0, p], e[1, p], e[3, p])
+        if not min(l1, l2, e[2, p]) > -1.0:
+            fail(report, INVERTED, i)
+            return
+        e1, e2, e3 = 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(e[2, p])
+        e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, e[GROW, p], dt, report)
+        if report[CODE] != 0.0:
+            return
+        if flows(body.flow):
+            e[0, p], e[1, p], e[3, p] = compose2(math.expm1(2.0 * e1), math.expm1(2.0 * e2), c, s)
+            e[2, p] = math.expm1(2.0 * e3)
+        carry_surface(body.surface, chunk, i, p, dt)
+        xx, yy, xy = compose2(t1, t2, c, s)
+        S[0, 0, p], S[0, 1, p], S[1, 0, p], S[1, 1, p], e[ACROSS, p] = xx, xy, xy, yy, t3
+    deliver_plane(body.particles, chunk, first, count)
+
+
+@react_volume.register(Hencky)
+@react_volume.register(HenckyWarm)
+def _(elastic, body, chunk, first, count, dt, report):
+    e, S = chunk.e, chunk.S
+    if not flows(body.flow):
+        deliver_volume(body.particles, chunk, first, count)
     eigen_chunk(e, count)
     for p in range(count):
         i = first + p
-        A = increment3(L, p, dt)
-        grow = dilation3(A)
-        J = particles.J[i] + particles.J[i] * grow
-        largest = max(abs(A[0]), abs(A[1]), abs(A[2]), abs(A[3]), abs(A[4]), abs(A[5]), abs(A[6]), abs(A[7]), abs(A[8]))
-        guard(report, largest, grow, J, min(e[0, p], e[1, p], e[2, p]), i)
-        if report[CODE] != 0.0:
+        if not min(e[0, p], e[1, p], e[2, p]) > -1.0:
+            fail(report, INVERTED, i)
             return
-        particles.J[i] = J
         ax, ay, az, bx, by, bz = e[3, p], e[4, p], e[5, p], e[6, p], e[7, p], e[8, p]
         e1, e2, e3 = 0.5 * math.log1p(e[0, p]), 0.5 * math.log1p(e[1, p]), 0.5 * math.log1p(e[2, p])
-        e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, grow, dt, report)
-        if flows(body.flow):
-            B = compose3(math.expm1(2.0 * e1), math.expm1(2.0 * e2), math.expm1(2.0 * e3), ax, ay, az, bx, by, bz)
-        else:
-            B = push3((b[i, 0], b[i, 1], b[i, 2], b[i, 3], b[i, 4], b[i, 5]), A)
-        b[i, 0], b[i, 1], b[i, 2], b[i, 3], b[i, 4], b[i, 5] = B
+        e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, e[GROW, p], dt, report)
+        if report[CODE] != 0.0:
+            return
         carry_surface(body.surface, chunk, i, p, dt)
         xx, yy, zz, xy, yz, xz = compose3(t1, t2, t3, ax, ay, az, bx, by, bz)
-        S = chunk.S
         S[0, 0, p], S[0, 1, p], S[0, 2, p] = xx, xy, xz
         S[1, 0, p], S[1, 1, p], S[1, 2, p] = xy, yy, yz
         S[2, 0, p], S[2, 1, p], S[2, 2, p] = xz, yz, zz
-        load(particles, chunk, i, p, 3, -next_dt * particles.V0[i] * scale)
+        if flows(body.flow):
+            B = compose3(math.expm1(2.0 * e1), math.expm1(2.0 * e2), math.expm1(2.0 * e3), ax, ay, az, bx, by, bz)
+            e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p] = B
+    if flows(body.flow):
+        deliver_volume(body.particles, chunk, first, count)
+
+
+@react_plane.register(NeoHookean)
+def _(elastic, body, chunk, first, count, dt, report):
+    deliver_plane(body.particles, chunk, first, count)
+    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    mu, lam, one, nought = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
+    stiff = nought
+    for p in range(0, count, EIGHT):
+        J = load8(e, JACOBIAN * n + p)
+        stretch = one + maximum(load8(e, p) + load8(e, n + p) + load8(e, 2 * n + p), nought)  # at least the largest principal b
+        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * stretch, stiff)
+        pressure = lam * J * (J - one)
+        store(S, p, fma(mu, load8(e, p), pressure))
+        store(S, 3 * n + p, fma(mu, load8(e, n + p), pressure))
+        store(e, ACROSS * n + p, fma(mu, load8(e, 2 * n + p), pressure))
+        xy = mu * load8(e, 3 * n + p)
+        store(S, n + p, xy)
+        store(S, 2 * n + p, xy)
+    report[STRAIN] = min(report[STRAIN], 1.0 - most(stiff) / (elastic.lam + 2.0 * elastic.mu))
+    for p in range(count):
+        carry_surface(body.surface, chunk, first + p, p, dt)
+
+
+@react_volume.register(NeoHookean)
+def _(elastic, body, chunk, first, count, dt, report):
+    deliver_volume(body.particles, chunk, first, count)
+    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    mu, lam, one, nought = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
+    stiff = nought
+    for p in range(0, count, EIGHT):
+        J = load8(e, JACOBIAN * n + p)
+        stretch = one + maximum(load8(e, p) + load8(e, n + p) + load8(e, 2 * n + p), nought)  # at least the largest principal b
+        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * stretch, stiff)
+        pressure = lam * J * (J - one)
+        store(S, p, fma(mu, load8(e, p), pressure))
+        store(S, 4 * n + p, fma(mu, load8(e, n + p), pressure))
+        store(S, 8 * n + p, fma(mu, load8(e, 2 * n + p), pressure))
+        xy, yz, xz = mu * load8(e, 3 * n + p), mu * load8(e, 4 * n + p), mu * load8(e, 5 * n + p)
+        store(S, n + p, xy)
+        store(S, 3 * n + p, xy)
+        store(S, 5 * n + p, yz)
+        store(S, 7 * n + p, yz)
+        store(S, 2 * n + p, xz)
+        store(S, 6 * n + p, xz)
+    report[STRAIN] = min(report[STRAIN], 1.0 - most(stiff) / (elastic.lam + 2.0 * elastic.mu))
+    for p in range(count):
+        carry_surface(body.surface, chunk, first + p, p, dt)
 
 
 @kernel(inline=True)

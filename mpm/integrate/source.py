@@ -5,7 +5,7 @@ Laws are in mpm.sources. A body without a source compiles none of this.
 """
 
 from mpm.heat.local import rise
-from mpm.integrate.respond import HEATED
+from mpm.integrate.strain import HEATED
 from mpm.jit import role
 from mpm.sources import heat, push
 from mpm.state import Isothermal, NoSource, Source, Thermal
@@ -28,7 +28,7 @@ def _(thermal, i, joule):
     return joule
 
 
-@role
+@role(inline=True)
 def act(source, body, chunk, first, count, dt, next_dt, report):
     """After `respond`: heat of the past step `dt`, impulse of the coming one, on to chunk.f."""
     raise TypeError(f"no source {type(source).__name__}")

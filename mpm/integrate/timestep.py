@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
-from mpm.integrate.respond import RATE, SPEED, STRAIN, SWELL
+from mpm.integrate.strain import RATE, SPEED, STRAIN, SWELL
 from mpm.materials import Constant, HenckyWarm, moduli, value, warmed
 from mpm.state import Expansion, GridHeating, Heating, Load, NoExchange, Radiation, Thermal
 

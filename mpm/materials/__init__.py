@@ -1,7 +1,7 @@
 """Materials: how a particle answers deformation, and the functions of temperature that its parameters may be.
 
 Roles (the law chooses the function; all work compiled and in plain Python)
-          stress(law, e1, e2, e3, thermal) -> t1, t2, t3                               elastic laws: hencky
+          stress(law, e1, e2, e3, thermal) -> t1, t2, t3                               elastic laws: hencky, neo_hookean
           energy(law, e1, e2, e3) -> psi
           moduli(law) -> lam, mu
           flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
@@ -19,6 +19,7 @@ To add    a file here that registers its NamedTuple with the roles of its kind, 
 from mpm.materials.clipped import EllipseClipped
 from mpm.materials.hencky import Hencky
 from mpm.materials.laws import Bump, Constant, Logistic, Table, table
+from mpm.materials.neo_hookean import NeoHookean
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
@@ -26,11 +27,11 @@ from mpm.materials.returns import return_map
 from mpm.materials.roles import energy, enthalpy, flow, moduli, settled, stress, temperature_of, value, warmed
 from mpm.materials.warm import HenckyWarm
 
-ELASTIC = (Hencky,)
+ELASTIC = (Hencky, NeoHookean)
 FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
-    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NoFlow", "Porous", "Table",
-    "energy", "enthalpy", "flow", "moduli", "return_map", "settled", "stress", "table", "temperature_of", "value", "warmed",
+    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow", "Porous",
+    "Table", "energy", "enthalpy", "flow", "moduli", "return_map", "settled", "stress", "table", "temperature_of", "value", "warmed",
 ]  # fmt: skip

@@ -6,7 +6,7 @@ So kinds stay types and values stay run-time arguments: a batch of any size and 
 import numpy as np
 
 from mpm.jit import role
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NoFlow, Porous, Table
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NeoHookean, NoFlow, Porous, Table
 from mpm.point.state import Lumped, NoConduction, Rigid
 from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, Softening, Thermal
 
@@ -28,6 +28,11 @@ for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating):
 @pick.register(Hencky)
 def _(law, i):
     return Hencky(law.mu[i], law.lam[i])
+
+
+@pick.register(NeoHookean)
+def _(law, i):
+    return NeoHookean(law.mu[i], law.lam[i])
 
 
 @pick.register(HenckyWarm)

@@ -11,7 +11,7 @@ import numpy as np
 from mpm.basis import BASES
 from mpm.boundary import KINDS, extents
 from mpm.error import Motion
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NoFlow, Porous, table
+from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NeoHookean, NoFlow, Porous, table
 from mpm.observe import Watch
 from mpm.scene.exchange import exchanging_surface
 from mpm.scene.load import loaded
@@ -97,14 +97,15 @@ def sample(experiment, body):
 
 
 def elastic_law(model):
-    """Lame constants of whichever pair was given; of E = 1, with its law, where E follows temperature."""
+    """The run-time law, with Lame constants from whichever pair was given; of E = 1, with its law, where E follows temperature."""
+    kind = {"hencky": Hencky, "neo_hookean": NeoHookean}[type(model).kind]
     if model.E is not None:
         E = float(model.E.value) if type(model.E).kind == "constant" else 1.0
-        found = Hencky(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
+        found = kind(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
         return found if type(model.E).kind == "constant" else HenckyWarm(found, law(model.E))
     if model.lam is not None:
-        return Hencky(model.mu, model.lam)
-    return Hencky(model.mu, model.K - 2 * model.mu / 3)
+        return kind(model.mu, model.lam)
+    return kind(model.mu, model.K - 2 * model.mu / 3)
 
 
 def stress_temperature_modulus(expansion, elastic: Hencky) -> float:

@@ -5,10 +5,10 @@ A transfer is a pair of linear maps; it knows no physics. With weights w, offset
     gather    value = sum w u,   slope = sum w u d/(sum w d^2),   gradient = sum u grad(w)
 Momentum, forces, heat, conduction and surface exchange are all of this form (physics.md 3).
 
-Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py)
+Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py), then by basis: quadratic ones by rows of lanes (rows.py)
           scatter_scalar, gather_scalar: one scalar field, for heat; scatter_square (square.py): the diagonal of its implicit operator
           carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py, xpic.py)
-Shapes    chunk arrays (component, particle of the chunk); nodes (node, D + 1): momentum (then velocity) and mass
+Shapes    chunk arrays (component, particle of the chunk); nodes (node, columns(D)): momentum (then velocity), mass, room
 May use   mpm.basis, mpm.jit, mpm.state                      May not  see laws
 To add    a scheme: a file with a NamedTuple and its `carry`; a dimension: a file like plane.py
 """
@@ -23,9 +23,13 @@ from mpm.transfer.roles import (
     Mls,
     carry,
     collect,
+    columns,
+    fetch,
     gather,
     gather_scalar,
+    lay_down,
     new_chunk,
+    pick_up,
     scatter,
     scatter_scalar,
     spread,
@@ -36,6 +40,6 @@ from mpm.transfer.square import scatter_square
 from mpm.transfer.xpic import Xpic
 
 __all__ = [
-    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "gather", "gather_scalar", "line", "new_chunk", "plane", "scatter",
-    "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
+    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "fetch", "gather", "gather_scalar", "lay_down", "line",
+    "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
 ]  # fmt: skip

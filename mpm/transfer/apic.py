@@ -5,7 +5,8 @@ v_p = sum w v_i+,  C_p = 4/h^2 sum w v_i+ d^T.   Good for: nearly everything.   
 
 from typing import NamedTuple
 
-from mpm.transfer.roles import carry, collect, gather, scatter, spread, uses_basis_gradient, wants_change
+from mpm.lanes import EIGHT, load8, store
+from mpm.transfer.roles import carry, collect, deliver, gather, scatter, spread, uses_basis_gradient, wants_change
 
 
 class Apic(NamedTuple):
@@ -13,13 +14,9 @@ class Apic(NamedTuple):
 
 
 @carry.register(Apic)
-def _(scheme, particles, first, chunk, count, change):
-    for p in range(count):
-        i = first + p
-        for c in range(particles.v.shape[1]):
-            particles.v[i, c] = chunk.v[c, p]
-            for d in range(particles.v.shape[1]):
-                particles.C[i, c, d] = chunk.C[c, d, p]
+def _(scheme, particles, first, chunk, count, change, last):
+    if last:
+        deliver(particles, first, chunk, count)
 
 
 @wants_change.register(Apic)
@@ -29,16 +26,15 @@ def _(scheme):
 
 @spread.register(Apic)
 def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
-    D = chunk.a.shape[0]
-    for c in range(D):
-        for p in range(count):
-            chunk.a[c, p] += chunk.f[c, p]
-        for d in range(D):
-            for p in range(count):
-                if uses_basis_gradient(gradient):
-                    chunk.G[c, d, p] = chunk.S[c, d, p]
-                else:
-                    chunk.A[c, d, p] += chunk.S[c, d, p]
+    D, n = chunk.a.shape[0], chunk.m.shape[0]
+    for p in range(0, count, EIGHT):
+        for c in range(D):
+            store(chunk.a, c * n + p, load8(chunk.a, c * n + p) + load8(chunk.f, c * n + p))
+        for k in range(D * D):
+            if uses_basis_gradient(gradient):
+                store(chunk.G, k * n + p, load8(chunk.S, k * n + p))
+            else:
+                store(chunk.A, k * n + p, load8(chunk.A, k * n + p) + load8(chunk.S, k * n + p))
     scatter(space, gradient, x, first, chunk, count, nodes, box)
 
 

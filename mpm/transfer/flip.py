@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import role
-from mpm.transfer.roles import Bspline, Chunk, Mls, carry, collect, gather, scatter, spread, wants_change
+from mpm.transfer.roles import Bspline, Chunk, Mls, carry, collect, deliver, gather, scatter, spread, wants_change
 
 
 class Flip(NamedTuple):
@@ -20,15 +20,15 @@ class Flip(NamedTuple):
 
 
 @carry.register(Flip)
-def _(scheme, particles, first, chunk, count, change):
-    for p in range(count):
-        i = first + p
-        for c in range(particles.v.shape[1]):
-            old = particles.v[i, c]
-            dv = change[c, p]
-            particles.v[i, c] = old + dv + scheme.blend * (chunk.v[c, p] - dv - old)
-            for d in range(particles.v.shape[1]):
-                particles.C[i, c, d] = scheme.affine * chunk.C[c, d, p]
+def _(scheme, particles, first, chunk, count, change, last):
+    for c in range(chunk.u.shape[0]):
+        for p in range(count):
+            old, dv = particles.v[first + p, c], change[c, p]
+            chunk.u[c, p] = old + dv + scheme.blend * (chunk.v[c, p] - dv - old)
+        for d in range(chunk.u.shape[0]):
+            for p in range(count):
+                chunk.U[c, d, p] = scheme.affine * chunk.C[c, d, p]
+    deliver(particles, first, chunk, count)
 
 
 @wants_change.register(Flip)
@@ -43,12 +43,16 @@ def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, 
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
     massless = np.zeros_like(chunk.m)
     slope, tensor = impulse_parts(gradient, chunk)
-    scatter(space, gradient, x, first, Chunk(massless, chunk.f, slope, tensor, chunk.v, chunk.C, chunk.L, chunk.f, chunk.S, chunk.e), count, force, box)
+    c = chunk
+    apart = Chunk(massless, c.f, slope, tensor, c.v, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach)
+    scatter(space, gradient, x, first, apart, count, force, box)
 
 
 @collect.register(Flip)
 def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
-    gather(space, gradient, x, first, Chunk(chunk.m, chunk.a, chunk.A, chunk.G, change, chunk.C, chunk.L, chunk.f, chunk.S, chunk.e), count, force)
+    c = chunk
+    changed = Chunk(c.m, c.a, c.A, c.G, change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach)
+    gather(space, gradient, x, first, changed, count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 
 

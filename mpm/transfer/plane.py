@@ -4,13 +4,33 @@ Axisymmetric bodies use the same: the factor r sits in their masses and volumes.
 """
 
 from mpm.basis import stencil
-from mpm.state import Axisymmetric, Plane
+from mpm.jit import role
+from mpm.state import Axisymmetric, Cubic, Linear, Plane, Quadratic
 from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.rows import gather_plane, place_chunk, scatter_plane
 
 
 @scatter.register(Plane)
 @scatter.register(Axisymmetric)
 def _(space, gradient, x, first, chunk, count, nodes, box):
+    scatter_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes, box)
+
+
+@role(inline=True)
+def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box):
+    """As scatter."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@scatter_by_basis.register(Quadratic)
+def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+    place_chunk(space, x, first, chunk, count, box)
+    scatter_plane(space, gradient, chunk, count, nodes)
+
+
+@scatter_by_basis.register(Linear)
+@scatter_by_basis.register(Cubic)
+def _(basis, space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
@@ -39,6 +59,24 @@ def _(space, gradient, x, first, chunk, count, nodes, box):
 @gather.register(Plane)
 @gather.register(Axisymmetric)
 def _(space, gradient, x, first, chunk, count, nodes):
+    gather_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes)
+
+
+@role(inline=True)
+def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
+    """As gather."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@gather_by_basis.register(Quadratic)
+def _(basis, space, gradient, x, first, chunk, count, nodes):
+    place_chunk(space, x, first, chunk, count, chunk.reach)
+    gather_plane(space, gradient, chunk, count, nodes)
+
+
+@gather_by_basis.register(Linear)
+@gather_by_basis.register(Cubic)
+def _(basis, space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):

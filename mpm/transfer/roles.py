@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import kernel, role
+from mpm.lanes import EIGHT, peek, poke
+from mpm.transfer.stencils import ROWS
 
-CHUNK = 64  # particles that pass together: their scratch (28 kB in 3-D float64) stays in the first-level cache
+CHUNK = 64  # particles that pass together: their scratch (45 kB in 3-D float64) stays close to the first-level cache
 
 
 class Mls(NamedTuple):
@@ -26,19 +28,24 @@ class Chunk(NamedTuple):
     G: np.ndarray  # (D, D, n) tensor on grad(w); read with the B-spline gradient only
     v: np.ndarray  # (D, n) gathered velocity
     C: np.ndarray  # (D, D, n) gathered slope
-    L: np.ndarray  # (D, D, n) gathered gradient; the slope itself with the MLS gradient
+    L: np.ndarray  # (D, D, n) gathered gradient; the same array as C where they are the same
+    u: np.ndarray  # (D, n) velocity that the particle keeps; the same array as v where a scheme keeps that
+    U: np.ndarray  # (D, D, n) slope that it keeps; the same array as C where a scheme keeps that
     f: np.ndarray  # (D, n) impulse that acts on w (hoop stress)
     S: np.ndarray  # (D, D, n) impulse that acts on grad(w) (stress), scaled so that with the MLS gradient it adds to the slope
-    e: np.ndarray  # (9, n) trial strain tensor, then its values and two axes: a loop over particles of its own vectorises
+    e: np.ndarray  # (12, n) trial strain tensor, then its values and two axes; rows of integrate/strain.py
+    place: np.ndarray  # (D, n) positions
+    s: np.ndarray  # (D, ROWS, n) quadratic stencils (stencils.py)
+    reach: np.ndarray  # (D, 2) nodes that a gather touches
 
 
-@role
+@role(inline=True)
 def scatter(space, gradient, x, first, chunk, count, nodes, box):
     """Add `count` particles from `first` on to `nodes`; `box` (D, 2) grows to the nodes touched."""
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 
-@role
+@role(inline=True)
 def gather(space, gradient, x, first, chunk, count, nodes):
     """Fill v, C, L of the chunk from the nodal velocities."""
     raise TypeError(f"no transfer for {type(space).__name__}")
@@ -56,19 +63,22 @@ def gather_scalar(space, x, first, count, nodes, value, slope, grad):
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 
-@role
-def carry(scheme, particles, first, chunk, count, change):
-    """Particle velocity and slope from what was gathered; `change` (D, n) is sum w (v_i+ - v_i) where the scheme asks for it."""
+@role(inline=True)
+def carry(scheme, particles, first, chunk, count, change, last):
+    """Particle velocity and slope, in u and U, from what was gathered; `change` (D, n) is sum w (v_i+ - v_i) where the scheme asks for it.
+
+    On to the particles themselves after the `last` of a run of steps, and wherever the scheme needs them there.
+    """
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
 
 
-@role
+@role(inline=True)
 def spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
     """Scatter momentum and impulses of a chunk: together on `nodes`, or apart where the scheme needs the change of velocity."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
 
 
-@role
+@role(inline=True)
 def collect(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
     """Gather v, C, L of a chunk, and `change` (D, n) where the scheme asks for it."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
@@ -96,14 +106,73 @@ def _(gradient):
     return True
 
 
+def columns(D):
+    """Numbers of a node: momentum (then velocity), mass, and room up to four, so that a row of nodes is lanes (rows.py)."""
+    return 2 if D == 1 else 4
+
+
 @kernel
-def new_chunk(D, like):
-    """Scratch for D directions in the precision of `like`."""
+def new_chunk(D, like, own_gradient, own_velocity):
+    """Scratch for D directions in the precision of `like`; with a gradient that is not the slope, a kept velocity that is not the gathered one."""
     def vector():
         return np.zeros((D, CHUNK), like.dtype)
 
     def tensor():
         return np.zeros((D, D, CHUNK), like.dtype)
 
-    work = np.zeros((9, CHUNK), like.dtype)
-    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), vector(), tensor(), tensor(), vector(), tensor(), work)
+    v, C = vector(), tensor()
+    L, u, U = tensor() if own_gradient else C, vector() if own_velocity else v, tensor() if own_velocity else C
+    work, stencils = np.zeros((12, CHUNK), like.dtype), np.zeros((D, ROWS, CHUNK), like.dtype)
+    reach = np.zeros((D, 2), np.int64)
+    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), v, C, L, u, U, vector(), tensor(), work, vector(), stencils, reach)
+
+
+@kernel(inline=True)
+def lay_down(x, first, count, place):
+    """Positions of a chunk's particles as rows (D, n). Lanes behind the last particle repeat it. Written out by direction: a loop would cost more."""
+    D, n = x.shape[1], place.shape[1]
+    for p in range(count):
+        poke(place, p, peek(x, (first + p) * D))
+    if D > 1:
+        for p in range(count):
+            poke(place, n + p, peek(x, (first + p) * D + 1))
+    if D > 2:
+        for p in range(count):
+            poke(place, 2 * n + p, peek(x, (first + p) * D + 2))
+    for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
+        for d in range(D):
+            poke(place, d * n + p, peek(x, (first + count - 1) * D + d))
+
+
+@kernel(inline=True)
+def pick_up(x, first, count, place):
+    """The inverse of `lay_down`."""
+    D, n = x.shape[1], place.shape[1]
+    for p in range(count):
+        poke(x, (first + p) * D, peek(place, p))
+    if D > 1:
+        for p in range(count):
+            poke(x, (first + p) * D + 1, peek(place, n + p))
+    if D > 2:
+        for p in range(count):
+            poke(x, (first + p) * D + 2, peek(place, 2 * n + p))
+
+
+@kernel(inline=True)
+def fetch(particles, first, chunk, count):
+    """The kept velocity and slope of a chunk's particles."""
+    for p in range(count):
+        for c in range(chunk.u.shape[0]):
+            chunk.u[c, p] = particles.v[first + p, c]
+            for d in range(chunk.u.shape[0]):
+                chunk.U[c, d, p] = particles.C[first + p, c, d]
+
+
+@kernel(inline=True)
+def deliver(particles, first, chunk, count):
+    """The inverse of `fetch`."""
+    for p in range(count):
+        for c in range(chunk.u.shape[0]):
+            particles.v[first + p, c] = chunk.u[c, p]
+            for d in range(chunk.u.shape[0]):
+                particles.C[first + p, c, d] = chunk.U[c, d, p]

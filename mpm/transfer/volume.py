@@ -1,12 +1,32 @@
 """Transfers in three directions: eight, twenty-seven or sixty-four nodes a particle, by the basis of the space."""
 
 from mpm.basis import stencil
-from mpm.state import Volume
+from mpm.jit import role
+from mpm.state import Cubic, Linear, Quadratic, Volume
 from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.rows import gather_volume, place_chunk, scatter_volume
 
 
 @scatter.register(Volume)
 def _(space, gradient, x, first, chunk, count, nodes, box):
+    scatter_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes, box)
+
+
+@role(inline=True)
+def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box):
+    """As scatter."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@scatter_by_basis.register(Quadratic)
+def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+    place_chunk(space, x, first, chunk, count, box)
+    scatter_volume(space, gradient, chunk, count, nodes)
+
+
+@scatter_by_basis.register(Linear)
+@scatter_by_basis.register(Cubic)
+def _(basis, space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse, n1, n2 = space.h, 1.0 / space.h, space.n1, space.n2
     for p in range(count):
@@ -45,6 +65,24 @@ def _(space, gradient, x, first, chunk, count, nodes, box):
 
 @gather.register(Volume)
 def _(space, gradient, x, first, chunk, count, nodes):
+    gather_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes)
+
+
+@role(inline=True)
+def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
+    """As gather."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@gather_by_basis.register(Quadratic)
+def _(basis, space, gradient, x, first, chunk, count, nodes):
+    place_chunk(space, x, first, chunk, count, chunk.reach)
+    gather_volume(space, gradient, chunk, count, nodes)
+
+
+@gather_by_basis.register(Linear)
+@gather_by_basis.register(Cubic)
+def _(basis, space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse, n1, n2 = 1.0 / space.h, space.n1, space.n2
     for p in range(count):

@@ -9,7 +9,7 @@ Good values: order 2 to 5.   Fails when: long runs of many small steps must keep
 from typing import NamedTuple
 
 from mpm.transfer.flip import collect_apart, spread_apart
-from mpm.transfer.roles import carry, collect, spread, wants_change
+from mpm.transfer.roles import carry, collect, deliver, spread, wants_change
 
 
 class Xpic(NamedTuple):
@@ -19,13 +19,10 @@ class Xpic(NamedTuple):
 
 
 @carry.register(Xpic)
-def _(scheme, particles, first, chunk, count, change):
-    for p in range(count):
-        i = first + p
-        for c in range(particles.v.shape[1]):
-            particles.v[i, c] = change[c, p]
-            for d in range(particles.v.shape[1]):
-                particles.C[i, c, d] = 0.0
+def _(scheme, particles, first, chunk, count, change, last):
+    chunk.u[:] = change
+    chunk.U[:] = 0.0
+    deliver(particles, first, chunk, count)
 
 
 @wants_change.register(Xpic)

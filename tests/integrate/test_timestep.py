@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mpm.integrate.respond import RATE, REPORT, SPEED, STRAIN
+from mpm.integrate.strain import RATE, REPORT, SPEED, STRAIN
 from mpm.integrate.timestep import limits
 from mpm.scene.build import build
 
