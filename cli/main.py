@@ -7,6 +7,7 @@ import os
 import sys
 
 import typer
+from mpm_cli.bench import bench
 from mpm_cli.chart import chart
 from mpm_cli.collect import collect
 from mpm_cli.compare import compare
@@ -22,7 +23,7 @@ from mpm_cli.talk import internal, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, schema, info, warmup)
+COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

@@ -121,5 +121,16 @@ def role(stub=None, *, inline=False):
     def pick(*args):
         return laws.registry.get(getattr(args[0], "instance_class", None))
 
+    enter = laws.register
+
+    def register(kind, function=None):
+        """Every law is called `_`: Numba needs names that tell the laws of one file apart, also between processes that share a cache."""
+        if function is None:
+            return lambda found: register(kind, found)
+        if hasattr(function, "__qualname__") and function.__name__ == "_":
+            function.__qualname__ = f"{stub.__name__}_{kind.__name__}"
+        return enter(kind, function)
+
+    laws.register = register
     overload(laws, jit_options=FLAGS | (INLINE if inline else {}))(pick)
     return laws

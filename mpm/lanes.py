@@ -25,66 +25,10 @@ import operator
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.core.datamodel import models
-from numba.core.imputils import lower_builtin
-from numba.extending import register_model, type_callable
 
-FLAGS = ("contract", "reassoc", "arcp", "nsz", "afn")  # as mpm.jit: no "nnan", no "ninf"
+from mpm.lane_types import FLAGS, LanesType, halved, holds, one, operation, place, places, pointer, real, same
+
 EIGHT = 8  # particles that pass at once
-
-
-class LanesType(types.Type):
-    """Numba type of `count` numbers of type `dtype`."""
-
-    def __init__(self, dtype, count):
-        self.dtype, self.count = dtype, count
-        super().__init__(name=f"Lanes({dtype}, {count})")
-
-    @property
-    def llvm(self):
-        return ir.VectorType({types.float32: ir.FloatType(), types.float64: ir.DoubleType()}[self.dtype], self.count)
-
-
-@register_model(LanesType)
-class LanesModel(models.PrimitiveModel):
-    """Lives in a vector register, or in as many as it takes."""
-
-    def __init__(self, manager, kind):
-        super().__init__(manager, kind, kind.llvm)
-
-
-def operation(function, made, *takes):
-    """Let compiled code call `function`: `made(*types)` is the type of the result (None: not for these); decorates the LLVM side."""
-
-    @type_callable(function)
-    def _(context):
-        return made
-
-    return lower_builtin(function, *takes)
-
-
-def one(a):
-    """The type of lanes, or None."""
-    return a if isinstance(a, LanesType) else None
-
-
-def same(a, b):
-    """The common type of lanes, or None."""
-    return a if isinstance(a, LanesType) and a == b else None
-
-
-def real(kind):
-    return kind in (types.float32, types.float64)
-
-
-def holds(array):
-    """Whether lanes may be read from this array."""
-    return isinstance(array, types.Array) and array.layout == "C" and real(array.dtype)
-
-
-def pointer(context, builder, signature, arguments, lanes):
-    """Where number `at` of the array lies, as a pointer to `lanes`."""
-    return builder.bitcast(place(context, builder, signature, arguments), lanes.llvm.as_pointer())
 
 
 def load4(array, at):
@@ -124,12 +68,6 @@ def poke(array, at, x):
     array.reshape(-1)[at] = x
 
 
-def place(context, builder, signature, arguments):
-    """Where number `at` of the array lies."""
-    array, at = signature.args[:2]
-    return builder.gep(context.make_array(array)(context, builder, arguments[0]).data, [context.cast(builder, arguments[1], at, types.intp)])
-
-
 operation(peek, lambda array, at: array.dtype if holds(array) else None, types.Array, types.Integer)(lambda *around: around[1].load(place(*around)))
 
 
@@ -145,11 +83,6 @@ def splat4(x):
 
 def splat8(x):
     return np.full(8, x)
-
-
-def places(numbers):
-    """A constant list of lanes."""
-    return ir.Constant(ir.VectorType(ir.IntType(32), len(numbers)), numbers)
 
 
 def splat(context, builder, signature, arguments):
@@ -195,10 +128,6 @@ def shuffled(first, last):
         return builder.shuffle_vector(arguments[0], other, places(list(range(int(first * half), int(last * half)))))
 
     return generate
-
-
-def halved(a):
-    return LanesType(a.dtype, a.count // 2) if isinstance(a, LanesType) else None
 
 
 operation(join, lambda a, b: LanesType(a.dtype, 2 * a.count) if same(a, b) else None, LanesType, LanesType)(shuffled(0, 4))

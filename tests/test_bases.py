@@ -10,7 +10,7 @@ from mpm.boundary import KINDS, directions, extents
 from mpm.boundary.walls import fold, unfold
 from mpm.diagnostics import kinetic
 from mpm.state import PAD, Axisymmetric, Line, Particles, Plane, Volume
-from mpm.transfer import CHUNK, Bspline, Chunk, Mls, gather, gather_scalar, scatter, scatter_scalar
+from mpm.transfer import Bspline, Chunk, Mls, columns, gather, gather_scalar, new_chunk, scatter, scatter_scalar
 
 H, N = 0.3, 5
 S = np.concatenate([np.linspace(0, 3, 97), [1e-17, 2.5 - 1e-12, 3 - 1e-12]])
@@ -53,7 +53,7 @@ def places(space, seed=1):
 
 def noise(D, seed=2):
     rng = np.random.default_rng(seed)
-    chunk = Chunk(*(np.zeros(shape) for shape in ((CHUNK,), *[(D, CHUNK), (D, D, CHUNK), (D, D, CHUNK)] * 2, (D, CHUNK), (D, D, CHUNK), (12, CHUNK))))
+    chunk = new_chunk(D, np.zeros(1), True, True)
     chunk.m[:N] = rng.uniform(1, 2, N)
     for field in (chunk.a, chunk.A):
         field[..., :N] = rng.standard_normal((*field.shape[:-1], N))
@@ -62,7 +62,7 @@ def noise(D, seed=2):
 
 def scattered(space, gradient, x, chunk):
     D = directions(space)
-    nodes, box = np.zeros((math.prod(extents(space)), D + 1)), np.array([[10**9, -1]] * D)
+    nodes, box = np.zeros((math.prod(extents(space)), columns(D))), np.array([[10**9, -1]] * D)
     scatter(space, gradient, x, 0, chunk, N, nodes, box)
     return nodes
 
@@ -78,7 +78,8 @@ def test_transfers_reproduce_linear_fields_and_keep_momentum(name, make):
     space = make(BASES[name]())
     D, x, rng, gradient = directions(space), places(space), np.random.default_rng(3), gradient_of(name)
     constant, slope = rng.standard_normal(D), rng.standard_normal((D, D))
-    u = np.hstack([constant + nodes_at(space) @ slope.T, np.ones((math.prod(extents(space)), 1))])
+    u = np.zeros((math.prod(extents(space)), columns(D)))
+    u[:, :D] = constant + nodes_at(space) @ slope.T
     chunk = noise(D)
     gather(space, gradient, x, 0, chunk, N, u)
     assert np.allclose(chunk.v[:, :N].T, constant + x @ slope.T, atol=1e-13)

@@ -16,7 +16,7 @@ from numba import literal_unroll
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import fold, unfold
 from mpm.heat.local import rise, temperature
-from mpm.integrate.respond import HEATED
+from mpm.integrate.strain import HEATED
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
 from mpm.state import Axisymmetric, GridHeating, Heating, Line, NoHeating, Plane, Volume

@@ -34,7 +34,7 @@ def _(source, body, chunk, first, count, dt, next_dt, report):
             source.t[i] += dt
         drag = next_dt * source.rate * particles.m[i]
         for c in range(D):
-            chunk.f[c, p] -= drag * particles.v[i, c]
+            chunk.f[c, p] -= drag * chunk.u[c, p]
         if not source.loaded[i]:
             continue
         if dt > 0.0:

@@ -15,7 +15,7 @@ from numba import literal_unroll
 
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import fold, unfold
-from mpm.integrate.respond import increment3
+from mpm.integrate.strain import increment3
 from mpm.jit import kernel, role
 from mpm.state import Average, Axisymmetric, Line, NoAverage, Plane, Volume
 from mpm.tensors import dilation1, dilation2, dilation3
@@ -119,7 +119,7 @@ def _(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     unfold(total.reshape(-1, 1), 0, shape, box, walls)
 
 
-@role(inline=True)
+@role
 def relax(locking, space, x, first, chunk, count, dt):
     """Give the gathered velocity gradients of a chunk the averaged change of volume; before the particles move."""
     raise TypeError(f"no averaging by {type(locking).__name__}")

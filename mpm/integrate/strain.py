@@ -161,3 +161,12 @@ def strain_volume(particles, chunk, first, count, dt, report):
         store(e, GROW * n + p, grow)
         store(e, JACOBIAN * n + p, J)
     admit(particles, chunk, first, count, dt, rate, swell, good, report)
+
+
+@kernel(inline=True)
+def increment3(L, p, dt):
+    """dt L of a particle of the chunk, as tensors.push3 wants it."""
+    xx, xy, xz = dt * L[0, 0, p], dt * L[0, 1, p], dt * L[0, 2, p]
+    yx, yy, yz = dt * L[1, 0, p], dt * L[1, 1, p], dt * L[1, 2, p]
+    zx, zy, zz = dt * L[2, 0, p], dt * L[2, 1, p], dt * L[2, 2, p]
+    return xx, xy, xz, yx, yy, yz, zx, zy, zz

@@ -27,7 +27,7 @@ from mpm.materials.returns import return_map
 from mpm.materials.roles import energy, enthalpy, flow, moduli, settled, stress, temperature_of, value, warmed
 from mpm.materials.warm import HenckyWarm
 
-ELASTIC = (Hencky, NeoHookean)
+ELASTIC = (Hencky,)  # those that may flow; NeoHookean is elastic only
 FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 LAWS = (Constant, Table, Bump, Logistic)
 

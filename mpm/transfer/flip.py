@@ -6,8 +6,6 @@ Good values: blend 0 to 0.05; affine FLIP with 0.02.   Fails when: blend = 0 kee
 
 from typing import NamedTuple
 
-import numpy as np
-
 from mpm.jit import role
 from mpm.transfer.roles import Bspline, Chunk, Mls, carry, collect, deliver, gather, scatter, spread, wants_change
 
@@ -41,17 +39,16 @@ def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, 
     chunk.G[:] = 0.0
     scatter(space, gradient, x, first, chunk, count, nodes, box)
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
-    massless = np.zeros_like(chunk.m)
     slope, tensor = impulse_parts(gradient, chunk)
     c = chunk
-    apart = Chunk(massless, c.f, slope, tensor, c.v, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach)
+    apart = Chunk(c.none, c.f, slope, tensor, c.v, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none)
     scatter(space, gradient, x, first, apart, count, force, box)
 
 
 @collect.register(Flip)
 def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
     c = chunk
-    changed = Chunk(c.m, c.a, c.A, c.G, change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach)
+    changed = Chunk(c.m, c.a, c.A, c.G, change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none)
     gather(space, gradient, x, first, changed, count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 

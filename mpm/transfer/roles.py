@@ -37,6 +37,7 @@ class Chunk(NamedTuple):
     place: np.ndarray  # (D, n) positions
     s: np.ndarray  # (D, ROWS, n) quadratic stencils (stencils.py)
     reach: np.ndarray  # (D, 2) nodes that a gather touches
+    none: np.ndarray  # (n,) zeros: the mass of an impulse
 
 
 @role(inline=True)
@@ -123,8 +124,8 @@ def new_chunk(D, like, own_gradient, own_velocity):
     v, C = vector(), tensor()
     L, u, U = tensor() if own_gradient else C, vector() if own_velocity else v, tensor() if own_velocity else C
     work, stencils = np.zeros((12, CHUNK), like.dtype), np.zeros((D, ROWS, CHUNK), like.dtype)
-    reach = np.zeros((D, 2), np.int64)
-    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), v, C, L, u, U, vector(), tensor(), work, vector(), stencils, reach)
+    reach, none = np.zeros((D, 2), np.int64), np.zeros(CHUNK, like.dtype)
+    return Chunk(np.zeros(CHUNK, like.dtype), vector(), tensor(), tensor(), v, C, L, u, U, vector(), tensor(), work, vector(), stencils, reach, none)
 
 
 @kernel(inline=True)

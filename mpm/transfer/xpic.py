@@ -20,8 +20,12 @@ class Xpic(NamedTuple):
 
 @carry.register(Xpic)
 def _(scheme, particles, first, chunk, count, change, last):
-    chunk.u[:] = change
-    chunk.U[:] = 0.0
+    for c in range(chunk.u.shape[0]):
+        for p in range(count):
+            chunk.u[c, p] = change[c, p]
+        for d in range(chunk.u.shape[0]):
+            for p in range(count):
+                chunk.U[c, d, p] = 0.0
     deliver(particles, first, chunk, count)
 
 

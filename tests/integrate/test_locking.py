@@ -8,7 +8,7 @@ import pytest
 from mpm.boundary import KINDS, directions, extents
 from mpm.integrate.locking import average, grown, relax
 from mpm.state import PAD, Average, Axisymmetric, Body, Isothermal, Line, NoExchange, NoExpansion, NoHeating, Particles, Plane, Volume
-from mpm.transfer import Mls, gather, new_chunk
+from mpm.transfer import Mls, columns, gather, new_chunk
 
 H, N, DT = 0.25, 30, 0.1
 SPACES = [Line(H, 12), Plane(H, 9, 9), Axisymmetric(H, 9, 9), Volume(H, 8, 8, 8)]
@@ -25,7 +25,8 @@ def cloud(space, field):
     body = Body(particles, Isothermal(300.0), NoExchange(), None, None, NoExpansion(), NoHeating(), locking=locking)
     axes = [(np.arange(k) - PAD) * H for k in extents(space)[:D]]
     at = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1)
-    nodes = np.hstack([field(at), np.ones((n, 1))])
+    nodes = np.ones((n, columns(D)))
+    nodes[:, :D] = field(at)
     box = np.array([[0, k] for k in extents(space)])
     return body, nodes, box
 
@@ -34,7 +35,7 @@ def relaxed(space, field):
     """Gathered gradients and changes of volume before and after."""
     body, nodes, box = cloud(space, field)
     x, D = body.particles.x, directions(space)
-    chunk = new_chunk(D, x)
+    chunk = new_chunk(D, x, True, False)
     average(body.locking, space, Mls(), body, chunk, nodes, box, np.full((3, 2), KINDS["contact"]), DT)
     gather(space, Mls(), x, 0, chunk, N, nodes)
     before, own = chunk.L[..., :N].copy(), np.array([grown(space, x, p, chunk, p, DT) for p in range(N)])

@@ -7,7 +7,7 @@ import pytest
 
 from mpm.boundary import directions, extents
 from mpm.state import PAD, Axisymmetric, Line, Plane, Volume
-from mpm.transfer import CHUNK, Apic, Bspline, Chunk, Flip, Mls, collect, gather, gather_scalar, scatter, scatter_scalar, spread, wants_change
+from mpm.transfer import Apic, Bspline, Chunk, Flip, Mls, collect, columns, gather, gather_scalar, new_chunk, scatter, scatter_scalar, spread, wants_change
 
 H = 0.3
 SPACES = [Line(H, 12), Plane(H, 11, 12), Axisymmetric(H, 11, 12), Volume(H, 10, 11, 12)]
@@ -33,7 +33,7 @@ def nodes_at(space):
 def chunk_of(D, seed=2):
     """A chunk filled with noise in its first N places."""
     rng = np.random.default_rng(seed)
-    chunk = Chunk(*(np.zeros(shape) for shape in ((CHUNK,), *[(D, CHUNK), (D, D, CHUNK), (D, D, CHUNK)] * 2, (D, CHUNK), (D, D, CHUNK), (12, CHUNK))))
+    chunk = new_chunk(D, np.zeros(1), True, True)
     chunk.m[:N] = rng.uniform(1, 2, N)
     for field in (chunk.a, chunk.A, chunk.f, chunk.S):
         field[..., :N] = rng.standard_normal((*field.shape[:-1], N))
@@ -46,7 +46,7 @@ def empty_box(D):
 
 def scattered(space, gradient, x, chunk):
     D = directions(space)
-    nodes = np.zeros((math.prod(extents(space)), D + 1))
+    nodes = np.zeros((math.prod(extents(space)), columns(D)))
     scatter(space, gradient, x, 0, chunk, N, nodes, empty_box(D))
     return nodes
 
@@ -67,7 +67,8 @@ def test_scatter_keeps_mass_momentum_and_angular_momentum(space):
 def test_gather_is_exact_for_linear_fields(space, gradient):
     D, x, rng = directions(space), positions(space), np.random.default_rng(3)
     constant, slope = rng.standard_normal(D), rng.standard_normal((D, D))
-    nodes = np.hstack([constant + nodes_at(space) @ slope.T, np.ones((math.prod(extents(space)), 1))])
+    nodes = np.zeros((math.prod(extents(space)), columns(D)))
+    nodes[:, :D] = constant + nodes_at(space) @ slope.T
     chunk = chunk_of(D)
     gather(space, gradient, x, 0, chunk, N, nodes)
     assert np.allclose(chunk.v[:, :N].T, constant + x @ slope.T, atol=1e-13)
@@ -125,7 +126,7 @@ def test_one_scalar_field_as_vectors(space):
 @over_spaces
 def test_the_box_holds_the_nodes_touched_and_no_more(space):
     D, x, chunk = directions(space), positions(space), chunk_of(directions(space))
-    nodes, box = np.zeros((math.prod(extents(space)), D + 1)), empty_box(D)
+    nodes, box = np.zeros((math.prod(extents(space)), columns(D))), empty_box(D)
     scatter(space, Mls(), x, 0, chunk, N, nodes, box)
     mass = nodes[:, D].reshape(extents(space)[:D])
     for axis in range(D):

@@ -1,0 +1,52 @@
+"""The law without principal axes against its own form in principal stretches, and the chunk that carries it. In plain Python."""
+
+import numpy as np
+import pytest
+
+from mpm.integrate.react import ACROSS, react_plane, react_volume
+from mpm.integrate.strain import JACOBIAN, REPORT, STRAIN
+from mpm.materials import NeoHookean, energy, moduli, stress
+from mpm.state import Body, Isothermal, NoExchange, NoExpansion, NoHeating, Particles
+from mpm.transfer import new_chunk
+
+LAW, N = NeoHookean(3.0, 5.0), 13
+
+
+def stretched(D):
+    """A body and its chunk with random elastic strains, and those strains as tensors (N, 3, 3)."""
+    rng = np.random.default_rng(D)
+    F = np.eye(3) + 0.3 * rng.uniform(-1, 1, (N, 3, 3))
+    if D == 2:
+        F[:, 2, :2] = F[:, :2, 2] = 0.0
+    b, chunk = F @ F.transpose(0, 2, 1), new_chunk(D, np.zeros(1), False, False)
+    places = {2: [(0, 0), (1, 1), (2, 2), (0, 1)], 3: [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]}[D]
+    for row, (i, j) in enumerate(places):
+        chunk.e[row, :N] = b[:, i, j] - (i == j)
+    chunk.e[JACOBIAN, :N] = np.linalg.det(F)
+    particles = Particles(np.zeros((N, D)), np.zeros((N, D)), np.zeros((N, D, D)), np.zeros((N, len(places))), np.ones(N), np.ones(N), np.ones(N))
+    return Body(particles, Isothermal(300.0), NoExchange(), LAW, None, NoExpansion(), NoHeating()), chunk, b
+
+
+@pytest.mark.parametrize("D, react", [(2, react_plane), (3, react_volume)])
+def test_stress_of_a_chunk_is_that_of_its_principal_stretches(D, react):
+    body, chunk, b = stretched(D)
+    report = np.zeros(REPORT)
+    react(LAW, body, chunk, 0, N, 0.1, report)
+    values, axes = np.linalg.eigh(b)
+    principal = np.array([stress(LAW, *(0.5 * np.log(row)), 0.0) for row in values])
+    expected = np.einsum("pik,pk,pjk->pij", axes, principal, axes)
+    assert np.allclose(chunk.S[:, :, :N].transpose(2, 0, 1), expected[:, :D, :D], atol=1e-13)
+    if D == 2:
+        assert np.allclose(chunk.e[ACROSS, :N], expected[:, 2, 2], atol=1e-13)
+    assert np.array_equal(body.particles.B, chunk.e[: body.particles.B.shape[1], :N].T)
+    assert report[STRAIN] < 0  # stretched: the wave modulus has grown
+
+
+def test_stress_is_the_slope_of_energy_and_hookean_when_small():
+    e, step = np.array([0.2, -0.1, 0.05]), 1e-6
+    for k in range(3):
+        d = step * np.eye(3)[k]
+        assert (energy(LAW, *(e + d)) - energy(LAW, *(e - d))) / (2 * step) == pytest.approx(stress(LAW, *e, 0.0)[k], rel=1e-8)
+    small = 1e-7 * e
+    lam, mu = moduli(LAW)
+    assert np.allclose(stress(LAW, *small, 0.0), 2 * mu * small + lam * small.sum(), rtol=1e-6, atol=0)
