@@ -38,74 +38,54 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     shape = extents(space)
     empty(shape, boxes[0])
     empty(shape, boxes[1])
-    if not open_all(space, gradient, scheme, bodies, chunk, nodes[0], force[0], boxes[0], dt, reports):
-        return
-    for step in range(steps):
-        now = step % 2  # a variable that starts as the literal 0 would compile everything below twice
-        update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
-        sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
-        average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
-        compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
-        last = step == steps - 1
-        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
+    for step in range(-1, steps):
+        opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
+        if not opening:
+            update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
+            sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
+            average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
+            compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
+        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports):
             return
-        if wants_change(scheme):
-            clear(force[now], shape, boxes[now].copy())
-        clear(nodes[now], shape, boxes[now])
+        if not opening:
+            if wants_change(scheme):
+                clear(force[now], shape, boxes[now].copy())
+            clear(nodes[now], shape, boxes[now])
 
 
 @kernel
-def open_all(space, gradient, scheme, bodies, chunk, nodes, force, box, dt, reports):
-    """First scatter of a run of steps; false where a particle cannot answer."""
+def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports):
+    """Gather from buffer `now` (unless it is the opening of a run), respond, and scatter on to the other (unless it is the last step).
+
+    False where a particle fails.
+    """
     ok, b = True, 0
     for body in literal_unroll(bodies):  # bodies of several types: Numba unrolls a loop without exits only
-        ok = ok and open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, reports[b])
+        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports[b])
         b += 1
     return ok
 
 
 @kernel
-def open_body(space, gradient, scheme, body, chunk, nodes, force, box, dt, report):
-    """First scatter of one body."""
-    x = body.particles.x
-    chunk.L[:] = 0.0
-    for first in range(0, x.shape[0], CHUNK):
-        count = min(CHUNK, x.shape[0] - first)
-        fetch(body.particles, first, chunk, count)
-        respond(space, gradient, body, chunk, first, count, 0.0, dt, report)
-        if report[CODE] != 0.0:
-            return False
-        act(body.source, body, chunk, first, count, 0.0, dt, report)
-        spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box)
-    return True
-
-
-@kernel
-def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, last, reports):
-    """Gather from buffer `now`, respond, and scatter on to the other unless it is the last step; false where a particle fails."""
-    ok, b = True, 0
-    for body in literal_unroll(bodies):
-        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, last, reports[b])
-        b += 1
-    return ok
-
-
-@kernel
-def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, last, report):
-    """One body's part of `pass_all`."""
+def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, opening, last, report):
+    """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
+    past = 0.0 if opening else dt
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
-        carry(scheme, body.particles, first, chunk, count, change, last)
-        relax(body.locking, space, x, first, chunk, count, dt)
-        move(space, x, chunk, first, count, dt, report)
+        if opening:
+            fetch(body.particles, first, chunk, count)
+        else:
+            collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
+            carry(scheme, body.particles, first, chunk, count, change, last)
+            relax(body.locking, space, x, first, chunk, count, dt)
+            move(space, x, chunk, first, count, dt, report)
         if report[CODE] == 0.0:
-            respond(space, gradient, body, chunk, first, count, dt, dt, report)
+            respond(space, gradient, body, chunk, first, count, past, dt, report)
         if report[CODE] != 0.0:
-            report[STEP] = step
+            report[STEP] = max(step, 0)
             return False
-        act(body.source, body, chunk, first, count, dt, dt, report)
+        act(body.source, body, chunk, first, count, past, dt, report)
         if not last:
             spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)
     return True
