@@ -15,8 +15,10 @@ from pathlib import Path
 
 import numba
 import numpy as np
+from llvmlite.binding import Linkage
 from numba import config, njit
 from numba.core.caching import IndexDataCacheFile
+from numba.core.codegen import CPUCodeLibrary
 from numba.extending import overload
 
 # No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
@@ -26,6 +28,7 @@ FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model
 # For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (each costs 20 cycles, and a tuple of
 # arrays has as many as it has fields). So they cannot make arrays, and must not return any.
 INLINE = {"forceinline": True, "_nrt": False}
+INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
 ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots", "reduce"}  # rooms that compiled code cannot reach (tests/test_layers.py)
 
@@ -57,6 +60,26 @@ def cache_folder() -> Path:
 
 CACHE = cache_folder()
 config.CACHE_DIR = str(CACHE)
+
+
+def keep_own_copies() -> None:
+    """Let every compiled function keep its own copy of what it calls.
+
+    Numba leaves the copies of callees to be merged by name when code is loaded. Which of them runs, each optimised in its own surroundings, then depends on
+    what this process compiled or loaded before, and so do the last bits of a result. Internal functions are not merged.
+    """
+    merged = CPUCodeLibrary._optimize_final_module
+
+    def optimise(library):
+        for function in library._final_module.functions:
+            if not function.is_declaration and function.linkage == Linkage.linkonce_odr and function.name.startswith("_ZN3mpm"):
+                function.linkage = Linkage.internal
+        return merged(library)
+
+    CPUCodeLibrary._optimize_final_module = optimise
+
+
+keep_own_copies()
 
 
 class Sealed(IndexDataCacheFile):
@@ -132,5 +155,5 @@ def role(stub=None, *, inline=False):
         return enter(kind, function)
 
     laws.register = register
-    overload(laws, jit_options=FLAGS | (INLINE if inline else {}))(pick)
+    overload(laws, jit_options=FLAGS | INNER | (INLINE if inline else {}))(pick)
     return laws

@@ -1,0 +1,206 @@
+"""`mpm bench CONFIG`: where the time of a particle-step goes, what each physics costs, and how far the machine's own limits are.
+
+Phases are timed on the config's own particles after some steps, each over and over by itself, so their sum is not quite the step: what one phase leaves in
+the cache helps the next. With and without: the same config with a section taken out, timed in turn with the whole, medians of ROUNDS.
+"""
+
+import statistics
+import time
+from typing import Any
+
+import numpy as np
+
+from mpm.boundary import directions
+from mpm.config import ConfigError, load
+from mpm.integrate.explicit import advance, move
+from mpm.integrate.respond import respond
+from mpm.integrate.strain import REPORT
+from mpm.integrate.timestep import limits
+from mpm.jit import kernel
+from mpm.lanes import fma, load8, most, splat8
+from mpm.runner import run_point
+from mpm.scene.build import build
+from mpm.simulation import Clock, warm_bodies, work_arrays
+from mpm.sweep.cases import plan
+from mpm.transfer import CHUNK, collect, new_chunk, spread
+
+ROUNDS, LEAST = 5, 0.05  # timings of a thing, and seconds that one lasts at least
+WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansion": ("expansion", "heating"), "heating": ("heating",)}
+
+
+@kernel
+def multiply_add(times):
+    """160 flops a turn in ten independent chains: what the multiply-add units can do."""
+    from_one = np.ones(8)
+    a = load8(from_one, 0)
+    b, c, d, e, f, g, h, i, j = a, a, a, a, a, a, a, a, a
+    half = splat8(0.5)
+    for _ in range(times):
+        a, b, c, d, e = fma(a, half, half), fma(b, half, half), fma(c, half, half), fma(d, half, half), fma(e, half, half)
+        f, g, h, i, j = fma(f, half, half), fma(g, half, half), fma(h, half, half), fma(i, half, half), fma(j, half, half)
+    return most(a + b + c + d + e + f + g + h + i + j)
+
+
+@kernel
+def triad(a, b, c):
+    """24 bytes a number."""
+    for i in range(a.shape[0]):
+        a[i] = b[i] + 0.5 * c[i]
+
+
+def seconds(call) -> float:
+    """Median time of a call, repeated until it lasts LEAST; the first call is a warm-up."""
+    call()
+    began = time.perf_counter()
+    call()
+    repeats = max(1, round(LEAST / max(time.perf_counter() - began, 1e-9)))
+    found = []
+    for _ in range(ROUNDS):
+        began = time.perf_counter()
+        for _ in range(repeats):
+            call()
+        found.append((time.perf_counter() - began) / repeats)
+    return statistics.median(found)
+
+
+def peaks() -> dict[str, float]:
+    """GFLOP/s of multiply-adds in float64 and GB/s of a triad too large for the caches, of one core."""
+    arrays = np.ones((3, 8_000_000))
+    return {
+        "gflops": 160 * 100_000 / seconds(lambda: multiply_add(100_000)) / 1e9,
+        "gbytes": 24 * arrays.shape[1] / seconds(lambda: triad(*arrays)) / 1e9,
+    }
+
+
+@kernel
+def gathers(scheme, space, gradient, body, chunk, nodes, force, change):
+    x = body.particles.x
+    for first in range(0, x.shape[0], CHUNK):
+        collect(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, change)
+
+
+@kernel
+def moves(space, body, chunk, dt, report):
+    x = body.particles.x
+    for first in range(0, x.shape[0], CHUNK):
+        move(space, x, chunk, first, min(CHUNK, x.shape[0] - first), dt, report)
+
+
+@kernel
+def responds(space, gradient, body, chunk, dt, report):
+    x = body.particles.x
+    for first in range(0, x.shape[0], CHUNK):
+        respond(space, gradient, body, chunk, first, min(CHUNK, x.shape[0] - first), dt, dt, report)
+
+
+@kernel
+def spreads(scheme, space, gradient, body, chunk, nodes, force, box):
+    x = body.particles.x
+    for first in range(0, x.shape[0], CHUNK):
+        spread(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, box)
+
+
+class Bench:
+    """A scene that can be stepped and taken apart."""
+
+    def __init__(self, experiment):
+        self.scene = build(experiment)
+        self.clock, self.buffers = Clock(self.scene), work_arrays(self.scene)
+        self.now = limits(self.scene.space, directions(self.scene.space), self.scene.bodies, self.clock.reports)
+        self.dt = (self.scene.step or self.now.step() * self.scene.safety) / 4
+        self.particles = sum(len(body.particles.m) for body in self.scene.bodies)
+        self.block = max(1, min(32, 200_000 // self.particles))
+
+    def steps(self) -> None:
+        """A block of steps."""
+        scene, (nodes, force, boxes, _) = self.scene, self.buffers
+        self.clock.reset()
+        advance(
+            scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, self.dt, self.block, self.clock.reports
+        )
+
+    def heat(self) -> None:
+        """A heat step of every body."""
+        warm_bodies(self.scene, self.clock, self.buffers, 1e-3 * min(self.now.pace, 1.0), self.now)
+
+    def step_ns(self) -> float:
+        """ns a particle and mechanical step."""
+        return 1e9 * seconds(self.steps) / self.block / self.particles
+
+    def phases(self) -> dict[str, float]:
+        """ns a particle of each phase, on the first body."""
+        scene, (nodes, force, _, _) = self.scene, self.buffers
+        body, D, report = scene.bodies[0], directions(scene.space), np.zeros(REPORT)
+        kind, space, gradient, count = scene.scheme, scene.space, scene.gradient, len(scene.bodies[0].particles.m)
+        chunk, change = new_chunk(D, nodes, True, True), np.zeros((D, CHUNK), nodes.dtype)
+        box, tiny = np.array([[10**9, -1]] * 3), 1e-9 * self.dt
+        calls = {
+            "gather": lambda: gathers(kind, space, gradient, body, chunk, nodes[0], force[0], change),
+            "move": lambda: moves(space, body, chunk, tiny, report),
+            "respond": lambda: responds(space, gradient, body, chunk, tiny, report),
+            "scatter": lambda: spreads(kind, space, gradient, body, chunk, nodes[1], force[1], box),
+        }
+        found = {name: 1e9 * seconds(call) / count for name, call in calls.items()}
+        nodes[:], force[:] = 0.0, 0.0
+        return found
+
+
+def without(experiment, sections: tuple[str, ...]) -> Any:
+    """The experiment less those sections of every material and what needs them, or None where that is no experiment or the same one."""
+    data, missing = experiment.resolved(), False
+    for material in data["materials"].values():
+        for section in sections:
+            missing = missing or material.get(section) is not None
+            material[section] = None
+    if not missing:
+        return None
+    if "heat" in sections:
+        data["surfaces"] = []
+        data["output"]["probes"] = {}
+        data["method"]["heat_step"] = "auto"
+    data["output"]["observables"] = []
+    data["exact"] = None
+    for part in ("chart", "stability"):
+        data.pop(part, None)
+    try:
+        return load(data)
+    except ConfigError:
+        return None
+
+
+def phases(experiment) -> dict:
+    """Figures of one point of a config that moves."""
+    experiment = plan(experiment).cases[0].experiment
+    if experiment.grid.dimension == 0 or not experiment.moving:
+        return rigid(experiment)
+    whole = Bench(experiment)
+    found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "peaks": peaks(), "without_ns": {}}
+    if whole.now.heat:
+        found["heat_step_ns"] = 1e9 * seconds(whole.heat) / whole.particles
+    for name, sections in WITHOUT.items():
+        less = without(experiment, sections)
+        if less is not None and less.moving:
+            found["without_ns"][name] = Bench(less).step_ns()
+    state = sum(array.nbytes for body in whole.scene.bodies for array in body.particles)
+    found["state_bytes"] = state / whole.particles
+    found["bandwidth_share"] = 2 * found["state_bytes"] / found["step_ns"] / found["peaks"]["gbytes"]
+    return found
+
+
+def rigid(experiment) -> dict:
+    """Seconds of a point without particles."""
+    return {"point_s": seconds(lambda: run_point(experiment, compare=False)), "peaks": peaks()}
+
+
+def table(found: dict) -> str:
+    """The figures in words."""
+    if "point_s" in found:
+        return f"{1e3 * found['point_s']:.3g} ms a point (no particles)"
+    lines = [f"{found['particles']} particles, {found['step_ns']:.1f} ns a particle-step, {found['state_bytes']:.0f} B of state a particle"]
+    lines += [f"  {name:8} {value:7.1f} ns" for name, value in found["phases_ns"].items()]
+    if "heat_step_ns" in found:
+        lines.append(f"  heat     {found['heat_step_ns']:7.1f} ns a particle and heat step, at its own pace")
+    lines += [f"  without {name}: {value:.1f} ns a particle-step" for name, value in found["without_ns"].items()]
+    lines.append(f"one core here: {found['peaks']['gflops']:.0f} GFLOP/s of multiply-adds (float64), {found['peaks']['gbytes']:.1f} GB/s;")
+    lines.append(f"reading and writing the state takes {100 * found['bandwidth_share']:.0f} % of that bandwidth")
+    return "\n".join(lines)

@@ -1,0 +1,133 @@
+"""The table of speed: `python -m mpm.study.speed --peers FOLDER --python PYTHON`, beside the programs of other MPM codes on the same scene.
+
+FOLDER holds peer_taichi.py and peer_warp.py (same options and JSON line as `mpm bench`), PYTHON is an interpreter that has them. Whole processes, pinned to
+one core, in turn (ours, Taichi tuned, Warp), ROUNDS times; ratios of medians of the median step; `check` must agree. Without --peers: our own rows only.
+Prints a table in Markdown with machine and versions; every figure is of this run.
+"""
+
+import argparse
+import json
+import math
+import os
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from mpm.records.provenance import machine, versions
+
+ROOT = Path(__file__).parents[2]
+CASES = (  # what, options of the scene, floors: times Taichi tuned, times Warp
+    ("3-D elastic, 64³, float32", "--n 64 --np 100000 --dtype f32", 2.5, 3.3),
+    ("3-D elastic, 64³, float64", "--n 64 --np 100000 --dtype f64", 2.0, 2.5),
+    ("3-D elastic, 128³, float32", "--n 128 --np 512000 --dtype f32 --reps 5", 2.5, 3.3),
+    ("3-D elastic, 128³, float64", "--n 128 --np 512000 --dtype f64 --reps 5", 2.0, 2.5),
+    ("2-D elastic, 256², float32", "--dim 2 --n 256 --np 100000 --dtype f32", 1.6, None),
+    ("2-D elastic, 256², float64", "--dim 2 --n 256 --np 100000 --dtype f64", 1.2, None),
+    ("2-D, 4 000 particles, float32", "--dim 2 --n 64 --np 4000 --dtype f32 --steps 200", 2.0, None),
+    ("3-D, 4 000 particles, float32", "--n 32 --np 4000 --dtype f32 --steps 100", 2.0, None),
+)
+DIGITS = {"f32": 3e-5, "f64": 3e-7}
+INDEPENDENT = "--n 64 --np 100000 --dtype f64 --reps 30"
+
+
+def pinned(core: int, command: list[str]) -> list[str]:
+    """The command on one core."""
+    return ["taskset", "-c", str(core), *command]
+
+
+def ours(options: str) -> list[str]:
+    return [sys.executable, "-c", "import sys; from mpm_cli.main import main; sys.exit(main(sys.argv[1:]))", "bench", *options.split()]
+
+
+def line(command: list[str], core: int = 0) -> dict:
+    """The JSON line of a program."""
+    environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+    done = subprocess.run(pinned(core, command), capture_output=True, text=True, check=False, env=environment)
+    found = [text for text in done.stdout.splitlines() if text.startswith("{")]
+    if not found:
+        raise RuntimeError(f"{' '.join(command)}: no JSON line\n{done.stderr[-2000:]}")
+    return json.loads(found[-1])
+
+
+def agree(a: list[float], b: list[float], dtype: str) -> bool:
+    """Whether two checks are those of the same work."""
+    return all(math.isclose(x, y, rel_tol=DIGITS[dtype], abs_tol=DIGITS[dtype]) for x, y in zip(a, b, strict=True))
+
+
+def rows(peers: Path | None, python: str | None, rounds: int):
+    """One line of the table a case: ours in ns a particle-step, ratios, floors."""
+    for name, options, taichi_floor, warp_floor in CASES:
+        programs = {"mpm": ours(options)}
+        if peers is not None:
+            programs["taichi"] = [python, str(peers / "peer_taichi.py"), "--variant", "tuned", *options.split()]
+            programs["warp"] = [python, str(peers / "peer_warp.py"), *options.split()]
+        line(programs["mpm"])  # compiles
+        lines = {key: [] for key in programs}
+        for _ in range(rounds):
+            for key, command in programs.items():
+                lines[key].append(line(command))
+        median = {key: statistics.median(one["med_ms"] / one["N"] for one in found) for key, found in lines.items()}
+        checked = all(agree(lines["mpm"][0]["check"], found[0]["check"], found[0]["dtype"]) for found in lines.values())
+        ratios = [f"{median[key] / median['mpm']:.2f} x" if key in median else "" for key in ("taichi", "warp")]
+        floors = " / ".join(f"{floor} x" if floor else "" for floor in (taichi_floor, warp_floor))
+        size = lines["mpm"][0]["bytes_particle"]
+        yield f"| {name} | {1e6 * median['mpm']:.1f} | {ratios[0]} | {ratios[1]} | {floors} | {size} | {'agree' if checked else 'DIFFER'} |"
+
+
+def shuffled() -> str:
+    """Particles in random order against a lattice; nothing is sorted."""
+    lattice, random = ([line(ours(f"--dtype f32 --order {order}"))["med_ms"] for _ in range(3)] for order in ("lattice", "shuffle"))
+    return f"particles in random order (they are not sorted): {statistics.median(random) / statistics.median(lattice):.2f} of the time on a lattice"
+
+
+def two_runs() -> str:
+    """Two independent runs on two cores against one."""
+    alone = line(ours(INDEPENDENT))["Mpps_med"]
+    environment = os.environ | {"NUMBA_NUM_THREADS": "1"}
+    both = [subprocess.Popen(pinned(core, ours(INDEPENDENT)), stdout=subprocess.PIPE, text=True, env=environment) for core in (0, 1)]
+    together = sum(json.loads(process.communicate()[0].splitlines()[-1])["Mpps_med"] for process in both)
+    return f"two independent runs on two cores: {together / alone:.2f} x one"
+
+
+def start_up() -> str:
+    """First cached step after import, and `mpm --help`."""
+    first = min(line(ours("--dtype f32 --n 32 --np 4000"))["first_s"] for _ in range(3))
+    times = []
+    for _ in range(5):
+        began = time.perf_counter()
+        subprocess.run([*ours("")[:3], "--help"], capture_output=True, check=True)
+        times.append(time.perf_counter() - began)
+    return f"first cached step after import: {first:.2f} s; `mpm --help`: {min(times):.2f} s"
+
+
+def grown() -> str:
+    """ns a particle-step from ten thousand to a million particles."""
+    found = [line(ours(f"--dtype f64 --n {n} --np {count} --reps 3")) for n, count in ((32, 10_000), (64, 100_000), (160, 1_000_000))]
+    return "ns a particle-step, float64, at 1e4, 1e5, 1e6 particles: " + ", ".join(f"{1e6 * one['med_ms'] / one['N']:.1f}" for one in found)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Speed beside other codes, as a table in Markdown.")
+    parser.add_argument("--peers", type=Path)
+    parser.add_argument("--python")
+    parser.add_argument("--rounds", type=int, default=3)
+    given = parser.parse_args()
+    about = machine()
+    print(
+        f"{about.get('processor', about)}, load {os.getloadavg()[0]:.1f} at the start; "
+        + ", ".join(f"{k} {v}" for k, v in versions().items() if k in ("mpm", "numba", "numpy"))
+    )
+    print(
+        "\n| scene, one core | ns a particle-step | Taichi tuned / ours | Warp / ours | floor | B of state a particle | check |\n|---|---|---|---|---|---|---|"
+    )
+    for row in rows(given.peers, given.python, given.rounds):
+        print(row, flush=True)
+    print()
+    for figure in (shuffled, two_runs, start_up, grown):
+        print(f"- {figure()}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
