@@ -124,6 +124,10 @@ ELSEWHERE = {
     "meet(NoExchange)", "place(NoExchange)", "radiate(Radiation)", "rise(Bump)", "rise(Logistic)", "rise(Table)",
     "thermal_stress(Latched)", "latch(Latched)", "flows(EllipseClipped)", "flows(EllipseRadial)",
     "act(Source)", "take_up(Isothermal)", "take_up(Thermal)",  # tests/verification/test_manufactured.py
+    "thermal_stress(Softening)", "latch(Softening)",  # tests/point/test_laws.py
+    "heat_locally(GridHeating)", "compress(GridHeating)",  # tests/integrate/test_grid_heating.py
+    "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
+    "act(Load)", "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/integrate/test_load.py, tests/heat/test_exchange_kinds.py
     "react_plane(NeoHookean)", "react_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
     "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_locking.py

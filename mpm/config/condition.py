@@ -29,8 +29,6 @@ class Formula:
 
     what, allowed = "formula", FORMULA
 
-    what = "condition"
-
     def __init__(self, text: str):
         if len(text) > MOST_LETTERS:
             raise ConditionError(f"the {self.what} is longer than {MOST_LETTERS} letters")
