@@ -4,7 +4,7 @@ import math
 
 from mpm.scene.inventory import output_bytes, physics
 
-NS_PARTICLE_STEP = {1: 60, 2: 200, "axisymmetric": 220, 3: 450}
+NS_PARTICLE_STEP = {1: 60, 2: 120, "axisymmetric": 130, 3: 220}  # with flow and heat; `mpm bench CONFIG` measures
 BYTES_PARTICLE = {1: 200, 2: 350, "axisymmetric": 390, 3: 880}  # at the peak, which is where particles are cut and weighed
 BYTES_NODE = 80
 BYTES_PROCESS = {"point": 175_000_000, "moving": 186_000_000, "rigid": 200_000_000}  # interpreter, packages, kernels from the cache
