@@ -25,8 +25,8 @@ from numba.extending import overload
 FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
 
 
-# For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (each costs 20 cycles, and a tuple of
-# arrays has as many as it has fields). So they cannot make arrays, and must not return any.
+# For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (an atomic operation each, and a
+# tuple of arrays has as many as it has fields). So they cannot make arrays, and must not return any.
 INLINE = {"forceinline": True, "_nrt": False}
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 

@@ -8,7 +8,7 @@ import math
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
 from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, deliver_plane, deliver_volume, fail
 from mpm.jit import kernel, role
-from mpm.lanes import EIGHT, fma, load8, maximum, most, splat8, store
+from mpm.lanes import EIGHT, absolute, fma, load8, maximum, most, splat8, store
 from mpm.materials import FLOW, Hencky, HenckyWarm, NeoHookean, NoFlow, flow, settled, stress, warmed
 from mpm.outcome import INVERTED, RETURN_MAP
 from mpm.state import NoExchange, Surface
@@ -152,12 +152,13 @@ def _(elastic, body, chunk, first, count, dt, report):
 def _(elastic, body, chunk, first, count, dt, report):
     deliver_plane(body.particles, chunk, first, count)
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
-    mu, lam, one, nought = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
-    stiff = nought
+    mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
     for p in range(0, count, EIGHT):
         J = load8(e, JACOBIAN * n + p)
-        stretch = one + maximum(load8(e, p) + load8(e, n + p) + load8(e, 2 * n + p), nought)  # at least the largest principal b
-        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * stretch, stiff)
+        # Gershgorin: no principal b - 1 is above the largest sum of a row of |B|.
+        shear = absolute(load8(e, 3 * n + p))
+        rows = maximum(maximum(load8(e, p), load8(e, n + p)) + shear, load8(e, 2 * n + p))
+        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * (one + rows), stiff)
         pressure = lam * J * (J - one)
         store(S, p, fma(mu, load8(e, p), pressure))
         store(S, 3 * n + p, fma(mu, load8(e, n + p), pressure))
@@ -174,12 +175,12 @@ def _(elastic, body, chunk, first, count, dt, report):
 def _(elastic, body, chunk, first, count, dt, report):
     deliver_volume(body.particles, chunk, first, count)
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
-    mu, lam, one, nought = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
-    stiff = nought
+    mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
     for p in range(0, count, EIGHT):
         J = load8(e, JACOBIAN * n + p)
-        stretch = one + maximum(load8(e, p) + load8(e, n + p) + load8(e, 2 * n + p), nought)  # at least the largest principal b
-        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * stretch, stiff)
+        xy, yz, xz = absolute(load8(e, 3 * n + p)), absolute(load8(e, 4 * n + p)), absolute(load8(e, 5 * n + p))
+        rows = maximum(maximum(load8(e, p) + xy + xz, load8(e, n + p) + xy + yz), load8(e, 2 * n + p) + xz + yz)
+        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * (one + rows), stiff)
         pressure = lam * J * (J - one)
         store(S, p, fma(mu, load8(e, p), pressure))
         store(S, 4 * n + p, fma(mu, load8(e, n + p), pressure))

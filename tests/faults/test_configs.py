@@ -97,7 +97,7 @@ HOSTILE = {
     "cells": base().replace("1e-3", "1e-18"),
     "outputs": base(output="{every: 1e-12}"),
     "name up": base().replace("slab", "../../up"),
-    "name root": base().replace("slab", "/tmp/root"),
+    "name root": base().replace("slab", "/elsewhere"),
     "name nul": base().replace("slab", '"a\\0b"'),
     "extends up": "extends: ../../../../etc/passwd\n" + base(),
     "extends device": "extends: /dev/zero\n" + base(),

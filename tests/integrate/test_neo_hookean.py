@@ -39,7 +39,19 @@ def test_stress_of_a_chunk_is_that_of_its_principal_stretches(D, react):
     if D == 2:
         assert np.allclose(chunk.e[ACROSS, :N], expected[:, 2, 2], atol=1e-13)
     assert np.array_equal(body.particles.B, chunk.e[: body.particles.B.shape[1], :N].T)
-    assert report[STRAIN] < 0  # stretched: the wave modulus has grown
+    J = np.sqrt(values.prod(axis=1))
+    stiffest = (LAW.lam * J * (2 * J - 1) + 2 * LAW.mu * values[:, -1]).max() / (LAW.lam + 2 * LAW.mu)
+    assert stiffest <= 1 - report[STRAIN] < 1.5 * stiffest  # what the step limit divides by: never below the wave modulus
+
+
+def test_the_step_limit_knows_a_bar_that_thins_as_it_stretches():
+    """b = (4, 1/2, 1/2): its trace grows less than its largest entry."""
+    body, chunk, _ = stretched(3)
+    chunk.e[:6, :N], chunk.e[JACOBIAN, :N] = 0.0, 1.0
+    chunk.e[:3, 4] = 3.0, -0.5, -0.5
+    report = np.zeros(REPORT)
+    react_volume(LAW, body, chunk, 0, N, 0.1, report)
+    assert 1 - report[STRAIN] == pytest.approx((LAW.lam + 2 * LAW.mu * 4) / (LAW.lam + 2 * LAW.mu))
 
 
 def test_stress_is_the_slope_of_energy_and_hookean_when_small():
