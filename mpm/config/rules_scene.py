@@ -99,6 +99,8 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
                 on_key=True,
             )
     if item.elastic is not None and item.elastic.kind == "neo_hookean":
+        if item.elastic.E is not None and item.elastic.E.kind != "constant":
+            yield Finding(("materials", name, "elastic", "neo_hookean", "E"), "neo_hookean has one E at all temperatures", "a number, or elastic: hencky")
         for section in ("flow", "expansion"):
             if getattr(item, section) is not None:
                 yield Finding(("materials", name, section), f"neo_hookean is elastic only: it has no {section}", "elastic: hencky", on_key=True)

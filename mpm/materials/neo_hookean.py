@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from mpm.materials.roles import energy, moduli, stress
+from mpm.materials.roles import energy, moduli, stress, warmed
 
 
 class NeoHookean(NamedTuple):
@@ -33,3 +33,8 @@ def energy_neo_hookean(law, e1, e2, e3):
 @moduli.register(NeoHookean)
 def moduli_neo_hookean(law):
     return law.lam, law.mu
+
+
+@warmed.register(NeoHookean)
+def warmed_neo_hookean(law, theta):
+    return law

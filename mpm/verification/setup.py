@@ -72,10 +72,11 @@ def line_box(experiment):
 
 
 def elastic_only(experiment, body, gravity: bool = False):
-    """(elastic law, density) of a body that neither flows nor expands."""
+    """(Hencky's law, density) of a body that neither flows nor expands."""
     from mpm.scene.build import elastic_law
 
     material = experiment.materials[body.material]
-    if material.elastic is None or material.flow is not None or material.expansion is not None or (experiment.gravity is not None and not gravity):
-        raise ValueError("the exact solution needs an elastic body without flow and expansion" + ("" if gravity else ", and no gravity"))
+    hencky = material.elastic is not None and material.elastic.kind == "hencky"
+    if not hencky or material.flow is not None or material.expansion is not None or (experiment.gravity is not None and not gravity):
+        raise ValueError("the exact solution needs a body with elastic: hencky, without flow and expansion" + ("" if gravity else ", and no gravity"))
     return elastic_law(material.elastic), material.density

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import mpm
 from mpm.integrate.react import ACROSS, react_plane, react_volume
 from mpm.integrate.strain import JACOBIAN, REPORT, STRAIN
 from mpm.materials import NeoHookean, energy, moduli, stress
@@ -52,6 +53,31 @@ def test_the_step_limit_knows_a_bar_that_thins_as_it_stretches():
     report = np.zeros(REPORT)
     react_volume(LAW, body, chunk, 0, N, 0.1, report)
     assert 1 - report[STRAIN] == pytest.approx((LAW.lam + 2 * LAW.mu * 4) / (LAW.lam + 2 * LAW.mu))
+
+
+def test_a_bar_that_hardly_swings_is_hencky_s(core):
+    """From the config to the record, compiled: at strains of 1e-5 the two laws store the same energy, to the strain."""
+
+    def push(scene):
+        particles = scene.bodies[0].particles
+        particles.v[:] = 1e-5 * np.sin(np.pi * particles.x)
+
+    stored = {}
+    for law in ("hencky", "neo_hookean"):
+        config = core.config(1, surfaces=[], time={"end": 0.5, "step": 0.005}, output={"every": 0.05, "observables": ["energy.elastic"]})
+        config["materials"]["solid"] = {"density": 2.0, "elastic": {law: {"lam": 3.0, "mu": 2.0}}}
+        _, run = core.play(mpm.load(config), push)
+        assert run.outcome.ok, run.outcome
+        stored[law] = run.series["energy_elastic"]
+    assert np.all(stored["hencky"][1:] > 0) and np.allclose(stored["neo_hookean"], stored["hencky"], rtol=1e-3, atol=0)
+
+
+def test_what_it_is_not_is_refused(core):
+    config = core.config(1)
+    config["materials"]["solid"]["elastic"] = {"neo_hookean": {"E": {"table": {"temperature": [280, 400], "value": [1, 2]}}, "nu": 0.3}}
+    with pytest.raises(mpm.ConfigError) as caught:
+        mpm.load(config)
+    assert "one E at all temperatures" in str(caught.value) and "it has no expansion" in str(caught.value)
 
 
 def test_stress_is_the_slope_of_energy_and_hookean_when_small():
