@@ -52,11 +52,11 @@ class Guards:
 
     def block(self, scene, clock) -> Outcome:
         """Before a block of steps, and before a record."""
-        for name, body, data in zip(scene.names, scene.bodies, self.data, strict=True):
+        for b, (name, body, data) in enumerate(zip(scene.names, scene.bodies, self.data, strict=True)):
             wrong = unsound(scene.space, body) or (data.judge(body) if isinstance(body.thermal, Thermal) else None)
             if wrong is not None:
                 code, particle, said = wrong
-                return outcome(code, particle, clock.time * scene.scale, clock.steps, f"({said}, {name})")
+                return outcome(code, scene.order.name(b, particle), clock.time * scene.scale, clock.steps, f"({said}, {name})")
         return outcome(COMPLETED)
 
     def frame(self, scene, clock, series) -> Outcome:

@@ -40,6 +40,7 @@ class Recorder:
     """Collects a run's records and turns them into a Run."""
 
     def __init__(self, scene):
+        self.scene = scene
         self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
         self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
         self.times: list[float] = []
@@ -52,17 +53,18 @@ class Recorder:
 
     @staticmethod
     def place(scene, x):
-        """(body, particle, offset) of the particle nearest to x."""
+        """(number of the body, particle, offset) of the particle nearest to x."""
         best = None
-        for body in scene.bodies:
+        for b, body in enumerate(scene.bodies):
             distance = np.sum((body.particles.x - x) ** 2, axis=1)
             i = int(np.argmin(distance))
             if best is None or distance[i] < best[0]:
-                best = (distance[i], body, i, x - body.particles.x[i])
+                best = (distance[i], b, i, x - body.particles.x[i])
         return best[1:]
 
     def probe(self, name: str) -> float:
-        body, i, offset = self.places[name]
+        b, i, offset = self.places[name]
+        body, i = self.scene.bodies[b], self.scene.order.where(b, i)
         if not isinstance(body.thermal, Thermal):
             return body.thermal.temperature
         return float(body.thermal.zero + body.thermal.theta[i] + body.thermal.c[i] @ offset)

@@ -20,6 +20,7 @@ from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
+from mpm.integrate.order import Order
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
@@ -68,6 +69,10 @@ class Scene:
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
+    order: Order = field(init=False)  # of the particles, while it runs
+
+    def __post_init__(self):
+        self.order = Order(self.space, self.bodies)
 
 
 class Clock:
@@ -121,6 +126,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         clock.recall(before["clock"])
         recorder.recall(before["recorder"])
         guards.recall(before["guards"])
+        scene.order.recall(before["order"])
         fill(scene.bodies, before["bodies"])
     else:
         recorder.record(scene, clock)
@@ -130,7 +136,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         stop = beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale)
         if keeper is not None and keeper.due(stop):
             passed = {"spent": clock.spent + time.perf_counter() - began}
-            parts = {"recorder": recorder.memory(), "guards": guards.memory(), "bodies": arrays(scene.bodies)}
+            parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory(), "bodies": arrays(scene.bodies)}
             keeper.save({"clock": vars(clock) | passed, **parts})
         return stop
 
@@ -138,12 +144,14 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         result = interval(scene, clock, recorder, guards, buffers, float(end), look)
         if not result.ok:
             break
+        scene.order.restore()
         recorder.record(scene, clock)
         result = guards.frame(scene, clock, recorder.series)
         if not result.ok:
             recorder.drop()
             break
         clock.output += 1
+    scene.order.restore()
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
     if guards.warned:
         run.facts["warnings"] = guards.warned
@@ -165,6 +173,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
     """Advance to the output time `end`; from within the interval where the run was cut there."""
     cut = clock.parts > 0
     if not cut:
+        scene.order.refresh()
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
         pace = scene.heat_step or now.pace
         clock.start, clock.part = clock.time, 0
@@ -235,9 +244,17 @@ def lost_to_grid(scene: Scene, body, rows):
     return specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)
 
 
+def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) -> None:
+    """One block of `steps` steps of dt; clock.reports tells of it."""
+    nodes, force, boxes, _ = buffers
+    scene.order.refresh()
+    clock.reset()
+    advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, steps, clock.reports)
+    scene.order.passed(math.sqrt(max(clock.reports[:, SPEED])) * dt * steps, steps)
+
+
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
-    nodes, force, boxes, _ = buffers
     particles = sum(len(body.particles.m) for body in scene.bodies)
     most = max(1, min(BLOCK, BLOCK_WORK // particles))
     while until - clock.time > 1e-12 * until:
@@ -258,8 +275,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)
-        clock.reset()
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, block, clock.reports)
+        advance_block(scene, clock, buffers, dt, block)
         clock.gather(dt)
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
         if failed is not None:
@@ -267,7 +283,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
             clock.steps += int(report[STEP])
             clock.time += dt * int(report[STEP])
             detail = f"of {scene.names[failed]}" if len(scene.names) > 1 else ""
-            return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps, detail)
+            return outcome(int(report[CODE]), scene.order.name(failed, int(report[PARTICLE])), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
         clock.time = until if block == count else clock.time + dt * block
         if look():

@@ -220,6 +220,16 @@ class Body(NamedTuple):
     locking: Any = NoAverage()  # or Average
 
 
+PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/order.py)
+    Particles: Particles._fields,
+    Thermal: ("theta", "c"),
+    Surface: ("F",),
+    Latched: ("most",),
+    Source: ("X", "t"),
+    Load: ("force", "dipole", "F", "loaded", "t"),
+}
+
+
 @dataclass
 class Run:
     """The result of one point."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.config import ConfigError, load
-from mpm.integrate.explicit import advance, move
+from mpm.integrate.explicit import move
 from mpm.integrate.respond import respond
 from mpm.integrate.strain import REPORT
 from mpm.integrate.timestep import limits
@@ -20,7 +20,7 @@ from mpm.jit import kernel
 from mpm.lanes import fma, load8, most, splat8
 from mpm.runner import run_point
 from mpm.scene.build import build
-from mpm.simulation import Clock, warm_bodies, work_arrays
+from mpm.simulation import Clock, advance_block, warm_bodies, work_arrays
 from mpm.sweep.cases import plan
 from mpm.transfer import CHUNK, collect, new_chunk, spread
 
@@ -117,11 +117,7 @@ class Bench:
 
     def steps(self) -> None:
         """A block of steps."""
-        scene, (nodes, force, boxes, _) = self.scene, self.buffers
-        self.clock.reset()
-        advance(
-            scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, self.dt, self.block, self.clock.reports
-        )
+        advance_block(self.scene, self.clock, self.buffers, self.dt, self.block)
 
     def heat(self) -> None:
         """A heat step of every body."""

@@ -1,0 +1,140 @@
+"""Particles in the order of the nodes that they touch, where that pays: neighbours in memory are neighbours in space.
+
+A body is sorted (counting sort by its first node, stable) where more than MIXED of its particles come more than FAR rows of nodes after the one before them;
+looked at before a block of steps, at the start of an output interval and after that when the fastest particle may have moved a cell, EVERY steps at least.
+That depends on positions and counts alone, so a run that was cut goes on with the same bits. At output times the original order is restored.
+A lattice stays as it was sampled: it runs as fast as sorted particles. Random order costs 1.26 of the time at 1e5 and 2.0 at 5e5 particles (3-D, float32).
+Bodies of less than LEAST particles, or in one direction, are left alone: they stay in the cache.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from mpm.basis import stencil
+from mpm.boundary import directions, extents
+from mpm.jit import kernel
+from mpm.state import PER_PARTICLE, Surface
+
+LEAST = 10_000
+MIXED, FAR = 0.1, 4
+EVERY = 16
+
+
+@kernel
+def first_nodes(space, x):
+    """Index of the first node that each particle touches (N,)."""
+    shape, out = extents(space), np.empty(x.shape[0], np.int64)
+    inverse = 1.0 / space.h
+    for i in range(x.shape[0]):
+        node = 0
+        for a in range(x.shape[1]):
+            first = stencil(space.basis, x[i, a] * inverse)[0]
+            node = node * shape[a] + min(max(first, 0), shape[a] - 1)
+        out[i] = node
+    return out
+
+
+@kernel
+def mixed(nodes, far):
+    """Share of particles more than `far` nodes away from the one before."""
+    jumps = 0
+    for i in range(1, nodes.shape[0]):
+        jumps += abs(nodes[i] - nodes[i - 1]) > far
+    return jumps / nodes.shape[0]
+
+
+@kernel
+def sorting(values):
+    """The permutation that sorts whole numbers, equal ones in the order they had: values[sorting(values)] rises."""
+    low, high = values.min(), values.max()
+    places = np.zeros(high - low + 2, np.int64)
+    for value in values:
+        places[value - low + 1] += 1
+    for k in range(1, places.shape[0]):
+        places[k] += places[k - 1]
+    out = np.empty(values.shape[0], np.int64)
+    for i in range(values.shape[0]):
+        at = values[i] - low
+        out[places[at]] = i
+        places[at] += 1
+    return out
+
+
+def parts(tree: Any):
+    """Every named tuple within named tuples."""
+    if isinstance(tree, tuple) and hasattr(tree, "_fields"):
+        yield tree
+        for part in tree:
+            yield from parts(part)
+
+
+def permute(body, order: np.ndarray) -> None:
+    """Particle k becomes what particle order[k] was, in every array of particles; pieces of a surface go with their owners."""
+    for part in parts(body):
+        for name in PER_PARTICLE.get(type(part), ()):
+            array = getattr(part, name)
+            array[...] = array[order]
+        if isinstance(part, Surface):
+            part.owner[...] = inverse(order)[part.owner]
+
+
+def inverse(order: np.ndarray) -> np.ndarray:
+    """The permutation that undoes one."""
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    return back
+
+
+class Order:
+    """Where the particles of a scene's bodies are."""
+
+    def __init__(self, space, bodies):
+        self.space, self.bodies = space, bodies
+        self.original: list[np.ndarray | None] = [None] * len(bodies)  # by body: the original number of each particle, None where nothing was moved
+        self.due, self.moved, self.steps = True, 0.0, 0  # whether to look, and how far [m] and for how many steps the fastest has moved since
+
+    def memory(self) -> dict:
+        """Enough to go on from here with the arrays of the bodies as they are (mpm.memory)."""
+        return {"original": self.original, "due": self.due, "moved": self.moved, "steps": self.steps}
+
+    def recall(self, found: dict) -> None:
+        """As it was when `memory` was kept; the arrays of the bodies are put back by others."""
+        vars(self).update(found)
+
+    def passed(self, distance: float, steps: int) -> None:
+        """After a block: the farthest that a particle can have moved in it [m]."""
+        self.moved, self.steps = self.moved + distance, self.steps + steps
+        self.due = self.due or (self.moved > self.space.h and self.steps >= EVERY)
+
+    def refresh(self) -> None:
+        """Before a block: sort what is worth it."""
+        if not self.due:
+            return
+        self.due, self.moved, self.steps = False, 0.0, 0
+        far = FAR * extents(self.space)[directions(self.space) - 1]
+        for b, body in enumerate(self.bodies):
+            if directions(self.space) > 1 and len(body.particles.m) >= LEAST:
+                nodes = first_nodes(self.space, body.particles.x)
+                if mixed(nodes, far) > MIXED:
+                    self.take(b, sorting(nodes))
+
+    def take(self, b: int, order: np.ndarray) -> None:
+        """Put the particles of a body in that order of the present one."""
+        permute(self.bodies[b], order)
+        self.original[b] = order if self.original[b] is None else self.original[b][order]
+
+    def restore(self) -> None:
+        """The original order, for records."""
+        for b, original in enumerate(self.original):
+            if original is not None:
+                permute(self.bodies[b], inverse(original))
+                self.original[b], self.due = None, True
+
+    def name(self, b: int, i: int) -> int:
+        """The original number of what is particle i now; -1 stays what it is."""
+        return i if self.original[b] is None or i < 0 else int(self.original[b][i])
+
+    def where(self, b: int, name: int) -> int:
+        """The place of a particle by its original number."""
+        return name if self.original[b] is None else int(np.flatnonzero(self.original[b] == name)[0])
