@@ -99,12 +99,15 @@ def put(group: Any, name: str, variable: Array) -> None:
 def seal(body: bytes, line: dict) -> bytes:
     """`body`, one line of JSON, and the digest of both."""
     text = json.dumps(line, ensure_ascii=False).encode()
-    return body + text + closing(body + text, text)
+    return b"".join([body, text, closing(text, body, text)])
 
 
-def closing(data: bytes, text: bytes) -> bytes:
-    """The last TAIL bytes of a sealed file."""
-    return f"\n{hashlib.sha256(data).hexdigest()}\n{zlib.crc32(text):08x}{len(text):08x}".encode()
+def closing(text: bytes, *parts: bytes | memoryview) -> bytes:
+    """The last TAIL bytes of a sealed file whose line is `text`, and whose `parts` one after another are all before them."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(part)
+    return f"\n{digest.hexdigest()}\n{zlib.crc32(text):08x}{len(text):08x}".encode()
 
 
 def unseal(data: bytes, path: Path | str = "") -> tuple[bytes, dict]:
@@ -112,7 +115,7 @@ def unseal(data: bytes, path: Path | str = "") -> tuple[bytes, dict]:
     try:
         length = int(data[-8:], 16)
         text = data[-TAIL - length : -TAIL]
-        if len(text) == length and data[-TAIL:] == closing(data[:-TAIL], text):
+        if len(text) == length and data[-TAIL:] == closing(text, memoryview(data)[:-TAIL]):
             return data[: -TAIL - length], json.loads(text)
     except ValueError:
         pass  # told below, with the same words as any other damage

@@ -10,7 +10,6 @@ file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,]
 
 import io
 import json
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,6 @@ from mpm.records.netcdf import seal, unseal
 from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
-SHARED = {"error", "outcome", "advice", "source"}
 LINE = "run_id status error outcome advice steps wall_time attempts source started finished".split()
 
 
@@ -55,11 +53,6 @@ class Record:
     def line(self) -> dict:
         """The summary that the seal carries."""
         return {name: getattr(self, name) for name in LINE}
-
-
-def slim(line: dict) -> dict:
-    """The same summary with its keys and repeated texts shared: a sweep keeps one a point in memory."""
-    return {sys.intern(name): sys.intern(value) if name in SHARED else value for name, value in line.items()}
 
 
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:

@@ -190,7 +190,7 @@ def run_one(
         "resolved": case.experiment.resolved(),
         "versions": versions(),
     }
-    return dataset(alone, about, {alone.cases[0].run_id: record}, {}, None), record, keeper
+    return dataset(alone, about, {alone.cases[0].run_id: record}), record, keeper
 
 
 def tree_of(source: Any) -> Any:

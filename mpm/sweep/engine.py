@@ -17,7 +17,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mpm.records.checkpoint import EVERY
-from mpm.records.point import slim
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
 from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
@@ -249,7 +248,7 @@ class Engine:
     def finish(self, line: dict) -> None:
         """A record is on disk: count it, or try the point again."""
         run_id, status = line["run_id"], line["status"]
-        self.lines[run_id] = slim(line)
+        self.lines[run_id] = line
         self.ran += 1
         retries = self.options.retries if self.options.retries is not None else {KILLED: KILLED_AGAIN}.get(status, 0)
         again = status in (KILLED, TIMEOUT) and line["outcome"] != MEMORY and self.attempts[run_id] <= retries and not self.stopped

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
-from mpm.records.point import slim
 from mpm.records.provenance import versions
 from mpm.sweep.about import read_about, write_about
+from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Refused
 
 BATCH = "batch-"
@@ -37,7 +37,6 @@ class Store:
         self.out = Path(out)
         self.seen: set[str] = set()  # batches whose summaries are known
         self.batched: dict[str, str] = {}  # run id -> the last batch that holds it
-        self.summaries: dict[str, dict] = {}
 
     @property
     def dataset(self) -> Path:
@@ -153,7 +152,7 @@ class Store:
                 self.seen.add(name)
                 for point in line["points"]:
                     if name >= self.batched.get(point["run_id"], ""):
-                        self.batched[point["run_id"]], self.summaries[point["run_id"]] = name, slim(point)
+                        self.batched[point["run_id"]] = name
         return damaged
 
     def bytes(self, run_ids: Iterable[str]) -> int:
@@ -166,22 +165,30 @@ class Store:
         this = secrets.token_hex(4)
         return (f"{BATCH}{number:08d}-{this}" for number in itertools.count(max(used, default=-1) + 1))
 
-    def lines(self, run_ids: list[str]) -> tuple[dict[str, dict], list[str]]:
+    def lines(self, run_ids: list[str]) -> tuple[Lines, list[str]]:
         """Summaries of the points that are there, and the names (of points and batches) of files whose end is damaged."""
-        damaged, found, own = self.look(), {}, self.own(run_ids)
+        damaged, found, batches = self.look(), Lines(), {}
+        own = self.own(run_ids)
         for run_id in run_ids:
-            try:
-                line = summary(self.path(run_id)) if run_id in own else self.summaries.get(run_id)
-            except DamagedFile:
-                damaged.append(run_id)
-                continue
-            if line is not None:
-                found[run_id] = slim(line) if run_id in own else line
+            if run_id in own:
+                try:
+                    line = summary(self.path(run_id))
+                except DamagedFile:
+                    damaged.append(run_id)
+                    continue
+                if line is not None:
+                    found[run_id] = line
+            elif run_id in self.batched:
+                batches.setdefault(self.batched[run_id], set()).add(run_id)
+        for name, members in batches.items():
+            for line in (summary(self.path(name)) or {"points": []})["points"]:
+                if line["run_id"] in members:
+                    found[line["run_id"]] = line
         return found, damaged
 
     def set_aside(self, name: str) -> Path:
         """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""
-        self.seen, self.batched, self.summaries = set(), {}, {}  # an earlier batch may hold some of its points
+        self.seen, self.batched = set(), {}  # an earlier batch may hold some of its points
         return set_aside(self.path(name))
 
     def experiment(self) -> dict | None:

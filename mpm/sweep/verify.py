@@ -45,6 +45,7 @@ def files(out: Path) -> Iterator[tuple[str, Path]]:
     """(kind, path) of every file that carries a checksum."""
     yield from (("experiment", path) for path in (out / "experiment.json",) if path.exists())
     yield from (("dataset", path) for path in (out / "sweep.nc", out / "run.nc") if path.exists())
+    yield from (("series", path) for path in sorted((out / "series").glob("*.nc")))
     yield from (("point", path) for path in sorted((out / "points").glob("*/*.nc")))
     yield from (("batch", path) for path in sorted((out / "batches").glob("*/*.nc")))
     yield from (("checkpoint", path) for path in sorted([*(out / "checkpoints").glob("*.checkpoint"), *out.glob("run.checkpoint")]))

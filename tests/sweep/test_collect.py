@@ -4,11 +4,12 @@ import xarray as xr
 
 from mpm.config import load
 from mpm.records.point import Record
-from mpm.sweep import collect as module
+from mpm.sweep import shards, table
 from mpm.sweep.api import collect_folder, execute, run_one, tree_of
 from mpm.sweep.cases import plan
 from mpm.sweep.collect import dataset
 from mpm.sweep.engine import Options
+from mpm.sweep.verify import verify
 
 SNAPSHOTS = {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"], "particles": ["position", "body"]}}
 
@@ -54,13 +55,36 @@ def test_grids_that_differ_and_fields_that_are_too_large_stay_in_the_points(conf
         for case, grid in zip(cases.cases, grids, strict=True)
     }
     about = {"title": "", "name": "a", "source": "", "smoke": False, "swept": [], "resolved": {}}
-    tree = tree_of(dataset(cases, about, records, {}, None))
+    tree = tree_of(dataset(cases, about, records))
     assert tree["grid"].file.values.tolist() == [f"points/{case.run_id[:2]}/{case.run_id}.nc" for case in cases.cases]
-    monkeypatch.setattr(module, "LIMIT", 10)
+    monkeypatch.setattr(table, "LIMIT", 10)
     go(points, tmp_path)
     tree = tree_of(tmp_path / "sweep.nc")
     for group in ("grid", "particles"):
         assert list(tree[group].data_vars) == ["file"] and (tmp_path / tree[group].file.item(0)).exists()
+
+
+def test_series_that_are_too_large_go_into_files_of_their_own(config, tmp_path, monkeypatch):
+    axes = {"axes": {"kappa": [0.2, 0.5, 17.0, 1.0, 1.5], "alpha": [1000, 2000]}}
+    go(config([1], sweep=axes), tmp_path / "one")
+    monkeypatch.setattr(table, "SERIES", 10)
+    monkeypatch.setattr(shards, "SHARD", 2 * 2 * 2 * 11 * 8)  # two values of kappa
+    go(config([1], sweep=axes), tmp_path / "cut")
+    whole, cut = tree_of(tmp_path / "one" / "sweep.nc")["series"].to_dataset(), tree_of(tmp_path / "cut" / "sweep.nc")["series"].to_dataset()
+    assert cut.file.values.tolist() == ["series/0000.nc"] * 2 + ["series/0001.nc"] * 2 + ["series/0002.nc"] and not {*cut.data_vars} & {*whole.data_vars}
+    parts = [xr.load_dataset(tmp_path / "cut" / file) for file in dict.fromkeys(cut.file.values.tolist())]
+    joined = xr.concat(parts, "kappa")
+    assert joined.kappa.values.tolist() == axes["axes"]["kappa"] and joined.alpha.values.tolist() == [1000, 2000]
+    for name in whole.data_vars:
+        np.testing.assert_array_equal(joined[name], whole[name])
+    (tmp_path / "cut" / "series" / "0001.nc").write_bytes(b"damaged")
+    found = verify(tmp_path / "cut")
+    assert found.sound and [one["what"] for one in found.damaged] == ["series"] and verify(tmp_path / "cut").damaged == []
+    assert [path.suffix for path in sorted((tmp_path / "cut" / "series").iterdir())] == [".nc", ".damaged", ".nc", ".nc"]
+    monkeypatch.setattr(shards, "SHARD", 10**9)
+    (tmp_path / "cut" / "sweep.nc").unlink()
+    collect_folder(tmp_path / "cut")
+    assert [path.name for path in (tmp_path / "cut" / "series").glob("*.nc")] == ["0000.nc"]
 
 
 def test_zip_sample_points_and_where(config, tmp_path):

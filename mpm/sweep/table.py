@@ -1,0 +1,197 @@
+"""Table: records laid out on the swept dimensions, one after another. It holds the arrays of the dataset and no record, so that a collect needs no more
+memory than they take; series of more than SERIES bytes are left to `shards`.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mpm.records.netcdf import Array, Group
+from mpm.records.point import Record
+from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, describe
+from mpm.sweep.align import places
+from mpm.sweep.coordinates import fixed, planned
+from mpm.sweep.over import Over
+
+LIMIT = 2**31  # bytes of fields (as they lie in the points' files) that go into sweep.nc
+SERIES = 2**29  # bytes of series that do: a collect takes some two and a half times as much memory
+AXES = ("x", "r", "y", "z")
+
+
+def described(name: str, dims: tuple[str, ...], data: Any, **more: Any) -> Array:
+    """An array with the units and the long name of the table."""
+    found = describe(name)
+    return Array(dims, data, {"units": found.units, "long_name": found.long_name, **more})
+
+
+class Table:
+    """`files`: paths by run id of the files that keep the fields, where those stay outside; None where they come in."""
+
+    def __init__(self, plan: Any, files: dict[str, str] | None = None):
+        self.plan, self.files = plan, files
+        self.dims = tuple(dim.name for dim in plan.dims)
+        self.shape = tuple(dim.size for dim in plan.dims)
+        self.count = math.prod(self.shape)
+        self.place: dict[str, int] = {}
+        self.more: dict[str, list[int]] = {}  # further places of points that stand at several
+        self.status, self.attempts = np.full(self.count, SKIPPED, np.int8), np.zeros(self.count, np.int32)
+        self.text = {name: np.full(self.count, "", object) for name in ("error", "outcome", "run_id", "file")}
+        self.numbers = {name: np.full(self.count, np.nan) for name in ("steps", "wall_time")}
+        self.finals: dict[str, np.ndarray] = {}
+        self.model: np.ndarray | None = None  # which model answered each point, where the config left it open
+        self.series_names: dict[str, None] = {}
+        self.series_over, self.fields = Over(self.count), Over(self.count)
+        self.axes: dict[str, np.ndarray] | None = None
+        self.apart = False  # whether the points' grids differ
+        self.rows: list[tuple[int, Record]] = []  # records that have particles, without anything else
+        self.sources: set[str] = set()
+        self.started, self.finished, self.facts = "", "", {}
+        for case in plan.cases:
+            self.status[case.flat], self.text["run_id"][case.flat] = PENDING, case.run_id
+            if self.place.setdefault(case.run_id, case.flat) != case.flat:
+                self.more.setdefault(case.run_id, []).append(case.flat)
+
+    def places(self, run_id: str) -> list[int]:
+        """Where a point stands; equal points are one."""
+        return [self.place[run_id], *self.more.get(run_id, ())] if run_id in self.place else []
+
+    def damaged(self, run_id: str, why: str) -> None:
+        """A point that is there, and cannot be read."""
+        for place in self.places(run_id):
+            self.text["error"][place] = why
+
+    def add(self, record: Record) -> None:
+        """Put a point where it stands; in the order of the plan, which is that of the particles in the dataset."""
+        self.sources.update({record.source} - {""})
+        self.started = min(self.started or record.started, record.started or self.started)
+        self.finished = max(self.finished, record.finished)
+        self.facts = self.facts or record.facts
+        self.series_names |= dict.fromkeys(record.series)
+        for name in record.finals:
+            if name not in self.finals:
+                self.finals[name] = np.full(self.count, np.nan)
+        for place in self.places(record.run_id):
+            self.put(place, record)
+
+    def put(self, place: int, record: Record) -> None:
+        """All of a record at one place."""
+        ok = record.status == OK
+        self.status[place], self.attempts[place] = record.status, record.attempts
+        self.text["error"][place], self.text["outcome"][place] = record.error, record.outcome
+        if self.files is not None:
+            self.text["file"][place] = self.files.get(record.run_id, "")
+        if ok:
+            self.numbers["steps"][place], self.numbers["wall_time"][place] = record.steps, record.wall_time
+            for name, value in record.finals.items():
+                self.finals[name][place] = value
+        if "model" in record.facts:
+            self.model = np.full(self.count, "", object) if self.model is None else self.model
+            self.model[place] = record.facts["model"].get("name", "full")
+        if self.series_over.keep and self.count * len(record.times) * 8 * len(record.series) > SERIES:
+            self.series_over.drop()
+        self.series_over.add(place, record.times, record.series, ok)
+        if record.grid:
+            self.axes = record.axes if self.axes is None else self.axes
+            self.apart = self.apart or not same(self.axes, record.axes)
+            if self.apart:
+                self.fields.drop()
+            self.text["file"][place] = self.text["file"][place] or f"points/{record.run_id[:2]}/{record.run_id}.nc"
+        self.fields.add(place, record.snapshot_times, record.grid, ok)
+        if len(record.row_size):
+            kept = Record(record.run_id, record.status, snapshot_times=record.snapshot_times, particles=record.particles, row_size=record.row_size)
+            self.rows.append((place, kept))
+
+    def full(self, values: np.ndarray) -> np.ndarray:
+        """(count, ...) over the swept dimensions."""
+        return values.reshape((*self.shape, *values.shape[1:]))
+
+    def root(self, swept: list[str]) -> Group:
+        """One number a point."""
+        flags = {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)}
+        columns = {"status": self.status} | {name: self.text[name] for name in ("error", "outcome", "run_id")} | self.numbers | {"attempts": self.attempts}
+        columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
+        group = Group(planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
+        coordinates = " ".join(name for name in group.variables if name not in self.dims)
+        for name, values in columns.items():
+            group.variables[name] = described(name, self.dims, self.full(values), **(flags if name == "status" else {}))
+            if coordinates:
+                group.variables[name].attrs["coordinates"] = coordinates
+        return group
+
+    def series(self, shards: list[str] | None = None) -> Group:
+        """Observables over time; or which file holds those of each value along the first dimension."""
+        time, columns = (self.series_over.axis(), {}) if shards else self.series_over.laid()
+        group = Group()
+        if not len(time):
+            return group
+        group.variables["time"] = described("time", ("time",), time, standard_name="time", axis="T")
+        for name, values in columns.items():
+            group.variables[name] = described(name, (*self.dims, "time"), self.full(values))
+        if shards:
+            about = {"units": "1", "long_name": "file that holds the series of these points, beside this one"}
+            group.variables["file"] = Array((self.dims[0],), np.array(shards, dtype=object), about)
+        group.variables |= self.measured()
+        return group
+
+    def measured(self) -> dict[str, Array]:
+        """Measured curves of the config, each over its own times."""
+        found = {}
+        for probe, curve in self.plan.cases[0].experiment.output.measured.items() if self.plan.cases else ():
+            samples, dim = np.array(curve.samples), f"measured_time_{probe}"
+            found[dim] = Array((dim,), samples[:, 0], {"units": "s", "long_name": f"times measured at {probe.replace('_', ' ')}"})
+            found[f"measured_temperature_{probe}"] = described(f"measured_temperature_{probe}", (dim,), samples[:, 1], source=curve.file)
+        return found
+
+    def grid(self) -> Group:
+        """Fields on the grid."""
+        group = Group()
+        if self.files is None and self.axes is None:
+            return group
+        if self.files is not None or self.apart:
+            return self.elsewhere()
+        time, columns = self.fields.laid()
+        names = tuple(name for name in reversed(AXES) if name in self.axes)
+        group.variables["snapshot"] = described("snapshot", ("snapshot",), time)
+        for name in names:
+            group.variables[name] = described(name, (name,), self.axes[name])
+        for field, values in columns.items():
+            group.variables[field] = described(field, (*self.dims, "snapshot", *names), self.full(values.astype(np.float32, copy=False)))
+        return group
+
+    def particles(self) -> Group:
+        """Snapshots of particles, one after another."""
+        group = Group()
+        if self.files is not None:
+            return self.elsewhere()
+        if not self.rows:
+            return group
+        time = self.fields.axis()
+        sizes, starts = np.zeros((self.count, len(time)), np.int64), np.zeros((self.count, len(time)), np.int64)
+        rows: dict[str, list[np.ndarray]] = {name: [] for _, record in self.rows for name in record.particles}
+        count = 0
+        for place, record in self.rows:
+            begins = np.cumsum(record.row_size) - record.row_size
+            for sample, onto in zip(*places(record.snapshot_times, time), strict=True):
+                begin, size = begins[sample], record.row_size[sample]
+                sizes[place, onto], starts[place, onto] = size, count
+                count += size
+                for name, parts in rows.items():
+                    parts.append(record.particles[name][begin : begin + size])
+        group.variables["snapshot"] = described("snapshot", ("snapshot",), time)
+        group.variables["row_size"] = described("row_size", (*self.dims, "snapshot"), self.full(sizes), sample_dimension="obs")
+        group.variables["row_start"] = described("row_start", (*self.dims, "snapshot"), self.full(starts))
+        for name, parts in rows.items():
+            values = np.concatenate(parts)
+            group.variables[name] = described(name, ("obs", "direction")[: values.ndim], values)
+        return group
+
+    def elsewhere(self) -> Group:
+        """Where the fields of each point lie, as they do not fit into one array or one file."""
+        about = {"units": "1", "long_name": "point file that holds the fields, beside this one"}
+        return Group({"file": Array(self.dims, self.full(self.text["file"]), about)})
+
+
+def same(one: dict[str, np.ndarray], two: dict[str, np.ndarray]) -> bool:
+    """Whether two grids are equal."""
+    return list(one) == list(two) and all(np.array_equal(one[name], two[name]) for name in one)
