@@ -1,18 +1,15 @@
-"""Algebra of small tensors on plain floats and tuples, in the precision of what comes in.
+"""Algebra of small tensors on numbers or lanes (mpm.lanes) in tuples, in the precision of what comes in.
 
 Components   line (xx, yy, zz); plane and axisymmetric (xx, yy, zz, xy), zz out of plane or hoop; volume (xx, yy, zz, xy, yz, xz)
 Increments   A = dt grad v, so that F <- (1 + A) F:
              line (xx,); plane and axisymmetric (xx, xy, yx, yy, zz), zz = 0 in plane strain; volume (xx, xy, xz, yx, yy, yz, zx, zy, zz)
 State        B = b_e - 1 = F_e F_e^T - 1, which keeps small strains precise in float32; principal Hencky strain 1/2 log1p(B_i)
 
-Literals are cast with `type(x)(...)`: a bare 0.5 would turn float32 into float64 inside Numba.
+Numbers are cast with `like`: a bare 0.5 would turn float32 into float64 inside Numba.
 """
 
-import math
-
-import numpy as np
-
 from mpm.jit import kernel
+from mpm.lanes import absolute, below, choose, like, maximum, precision, sqrt
 
 
 @kernel(inline=True)
@@ -22,13 +19,13 @@ def turn(a, b, w):
     Exact to round-off of the largest entry also for equal values (and to 1e-24 absolutely: far below any strain); branch-free
     (Golub & Van Loan, Matrix Computations, 8.5.2).
     """
-    one = type(a)(1)
-    tiny = type(a)(1e-30)  # 0/0 for an isotropic tensor
+    one, nought = like(a, 1.0), like(a, 0.0)
+    tiny = like(a, 1e-30)  # 0/0 for an isotropic tensor
     d = a - b
-    twice = w + w if abs(w) > np.finfo(type(a)).eps * abs(d) / 100 else type(a)(0)  # what Jacobi has squared away would go through subnormals, slowly
-    size = max(math.sqrt(d * d + twice * twice), abs(twice))  # the second where the squares underflow
-    t = (twice if d >= 0 else -twice) / (abs(d) + size + tiny)
-    c = one / math.sqrt(one + t * t)
+    twice = choose(below(like(a, 0.01) * precision(a) * absolute(d), absolute(w)), w + w, nought)  # else Jacobi's leavings would go, slowly, through subnormals
+    size = maximum(sqrt(d * d + twice * twice), absolute(twice))  # the second where the squares underflow
+    t = choose(below(d, nought), -twice, twice) / (absolute(d) + size + tiny)
+    c = one / sqrt(one + t * t)
     return t, c, t * c
 
 
@@ -51,7 +48,7 @@ def sweep(m, v):
     """One rotation in each plane of the tensor m (xx, yy, zz, xy, yz, xz), gathered in the axes v."""
     xx, yy, zz, xy, yz, xz = m
     ax, ay, az, bx, by, bz, cx, cy, cz = v
-    zero = type(xx)(0)
+    zero = like(xx, 0.0)
     t, c, s = turn(xx, yy, xy)
     xx, yy, xy = xx + t * xy, yy - t * xy, zero
     xz, yz = c * xz + s * yz, c * yz - s * xz
@@ -72,9 +69,9 @@ def eigen3(xx, yy, zz, xy, yz, xz):
     """Values and axes of a symmetric 3x3 tensor by Jacobi rotations: (l1, l2, l3, n1x, n1y, n1z, n2x, n2y, n2z, n3x, n3y, n3z). Not sorted.
 
     Error about 2e-15 (float32 2e-6) of the largest entry, axes orthonormal to the same, also for repeated values. Branch-free; four sweeps,
-    of which the last is at round-off already, written out because LLVM makes vectors of innermost loops only: of the one over particles.
+    of which the last is at round-off already.
     """
-    zero, one = type(xx)(0), type(xx)(1)
+    zero, one = like(xx, 0.0), like(xx, 1.0)
     m, v = sweep((xx, yy, zz, xy, yz, xz), (one, zero, zero, zero, one, zero, zero, zero, one))
     m, v = sweep(m, v)
     m, v = sweep(m, v)

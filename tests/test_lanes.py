@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from mpm.jit import kernel
-from mpm.lanes import absolute, below, floor, fma, four, high, item, join, least, load4, load8, low, maximum, minimum, most, peek, poke, splat4, splat8, store
+from mpm.lanes import (
+    absolute, below, choose, exponential, expm1, floor, fma, four, high, item, join, least, like, load4, load8, log1p, low, maximum, minimum, most, peek, poke,
+    precision, put, splat4, splat8, sqrt, store,
+)  # fmt: skip
 
 
 @kernel
@@ -27,6 +30,12 @@ def everything(a, b, out, number):
     store(out, 104, splat8(number))
     poke(out, 112, peek(a, 5))
     out[113], out[114], out[115] = least(y), most(y), item(x, 2)
+    store(out, 116, sqrt(absolute(x)))
+    store(out, 124, choose(below(x, y), x, like(x, 2.5)))
+    store(out, 132, 2.0 * x + 1.0 - (3.0 - y) / 4.0)
+    store(out, 140, put(x, 3, number) * precision(x))
+    one = a[5]
+    out[148], out[149], out[150] = choose(below(one, like(one, 0.5)), one, like(one, 3.0)), sqrt(absolute(one)), maximum(one, minimum(one, b[2]))
 
 
 @pytest.mark.filterwarnings("ignore:invalid value")
@@ -37,7 +46,7 @@ def test_compiled_equals_plain(real, holes):
     a, b = (3 * rng.standard_normal(8)).astype(real), (3 * rng.standard_normal(8)).astype(real)
     if holes:
         a[1], a[4] = np.nan, np.inf
-    compiled, plain = np.zeros(116, real), np.zeros(116, real)
+    compiled, plain = np.zeros(151, real), np.zeros(151, real)
     everything(a, b, compiled, real(0.7))
     everything.py_func(a, b, plain, real(0.7))
     assert np.allclose(compiled, plain, rtol=4 * np.finfo(real).eps, atol=4 * np.finfo(real).eps, equal_nan=True)
@@ -48,3 +57,42 @@ def test_a_nan_is_below_nothing():
     """Guards multiply what `below` says: a lane that is no number must fail them."""
     nan, one = np.full(8, np.nan), np.ones(8)
     assert not below(nan, one).any() and not below(one, nan).any() and below(0 * one, one).all()
+
+
+@kernel
+def powers(x, out):
+    n = x.shape[0]
+    for p in range(0, n, 8):
+        store(out, p, log1p(load8(x, p)))
+        store(out, n + p, expm1(load8(x, p)))
+        store(out, 2 * n + p, exponential(load8(x, p)))
+
+
+N = 1 << 18 if hasattr(powers, "signatures") else 1 << 10
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+def test_logarithm_and_exponential_to_two_ulp(real):
+    """Over every size of argument, against the library in long double."""
+    rng = np.random.default_rng(3)
+    small = 10.0 ** rng.uniform(-30, 0, N // 4)
+    x = np.concatenate([rng.uniform(-0.99, 3, N // 4), small, -0.999 * small, rng.uniform(-80, 80, N // 8), 10.0 ** rng.uniform(0, 30, N // 8)]).astype(real)
+    out = np.zeros((3, N), real)
+    powers(x, out)
+    wide, unit = x.astype(np.longdouble), np.finfo(real).eps
+    inside, moderate = x > -1, np.abs(x) < 80
+    for found, function, where in ((out[0], np.log1p, inside), (out[1], np.expm1, moderate), (out[2], np.exp, moderate)):
+        expected = function(wide[where])
+        assert np.max(np.abs(found[where] - expected) / np.abs(expected)) < 2 * unit
+    plain = np.zeros((3, 8), real)
+    powers.py_func(x[:8], plain)
+    assert np.allclose(plain, out[:, :8], rtol=4 * unit)
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+def test_powers_at_their_ends(real):
+    x = np.array([np.nan, -1e4, 1e4, 0.0, -0.0, 1e-38, -80.0, np.inf], real)
+    out = np.zeros((3, 8), real)
+    powers(x, out)
+    assert np.isnan(out[:, 0]).all() and out[1, 1] == -1 and 0 < out[2, 1] < 1e-30 and out[2, 2] > 1e30
+    assert (out[:2, 3:5] == 0).all() and (out[2, 3:5] == 1).all() and (out[:2, 5] == x[5]).all()

@@ -130,6 +130,8 @@ ELSEWHERE = {
     "act(Load)", "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/integrate/test_load.py, tests/heat/test_exchange_kinds.py
     "react_plane(NeoHookean)", "react_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
+    "warms(NoHeating)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
+    "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
     "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_locking.py
     "grown(Line)", "grown(Plane)", "grown(Axisymmetric)", "grown(Volume)",  # the same
 }  # fmt: skip

@@ -10,6 +10,7 @@ Fails when   the stress of the particles in the last cell under the load is read
 A body without loads compiles none of this.
 """
 
+from mpm.integrate.deformation import carry_one
 from mpm.integrate.source import act
 from mpm.jit import kernel
 from mpm.state import Load
@@ -38,7 +39,7 @@ def _(source, body, chunk, first, count, dt, next_dt, report):
         if not source.loaded[i]:
             continue
         if dt > 0.0:
-            carry(source.F, chunk.L, i, p, dt, D)
+            carry_one(source.F, chunk.L, i, p, dt, D)
         now = next_dt * share(source.t[i], source.ramp)
         for c in range(D):
             chunk.f[c, p] += now * source.force[i, c]
@@ -47,17 +48,3 @@ def _(source, body, chunk, first, count, dt, next_dt, report):
                 for k in range(D):
                     moment += source.dipole[i, c, k] * source.F[i, d, k]
                 chunk.S[c, d, p] += now * source.scale * moment
-
-
-@kernel
-def carry(F, L, i, p, dt, D):
-    """F <- (1 + dt L) F of particle i, which is p of the chunk."""
-    for d in range(D):
-        f0, f1, f2 = F[i, 0, d], F[i, min(1, D - 1), d], F[i, D - 1, d]
-        for c in range(D):
-            change = L[c, 0, p] * f0
-            if D > 1:
-                change += L[c, 1, p] * f1
-            if D > 2:
-                change += L[c, 2, p] * f2
-            F[i, c, d] += dt * change

@@ -1,20 +1,22 @@
-"""What the particles of a chunk answer their trial strains: return map, heating, stress (physics.md 4, steps 6 to 8), in principal axes or without.
+"""What the particles of a chunk answer their trial strains: return map, heating, stress (physics.md 4, steps 6 to 8), eight at once.
 
-eps_i = 1/2 log1p(B_i);  return map;  heating;  tau from eps and the new temperature.   Neo-Hookean: tau from B and J, no axes.
+eps = 1/2 log(1 + B);  return map on the trace and the deviator's size;  heating;  tau = 2 mu eps + (lam tr eps - thermal stress) 1;  B = exp(2 eps) - 1.
+In three dimensions without principal axes (mpm.isotropic), in a plane with those of its closed form. Neo-Hookean: react_neo_hookean.py.
 """
 
-import math
-
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.integrate.deformation import carry_all
 from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, deliver_plane, deliver_volume, fail
+from mpm.isotropic import exponential3, largest, logarithm3, lowest3, norm, split
 from mpm.jit import kernel, role
-from mpm.lanes import EIGHT, absolute, fma, load8, maximum, most, splat8, store
-from mpm.materials import FLOW, Hencky, HenckyWarm, NeoHookean, NoFlow, flow, settled, stress, warmed
+from mpm.lanes import EIGHT, absolute, below, choose, expm1, fma, item, least, like, load8, log1p, maximum, minimum, most, peek, poke, splat8, sqrt, store
+from mpm.materials import FLOW, Hencky, HenckyWarm, NoFlow, flow_lanes, moduli_lanes
 from mpm.outcome import INVERTED, RETURN_MAP
-from mpm.state import NoExchange, Surface
-from mpm.tensors import compose2, compose3, eigen2, eigen3
+from mpm.state import Expansion, GridHeating, Heating, Latched, NoExchange, NoExpansion, NoHeating, Softening, Surface
+from mpm.tensors import compose2, eigen2
 
 ACROSS = 4  # row of Chunk.e: stress out of plane
+WARMTH, PRESSURE, LOST = 6, 7, 8  # rows of Chunk.e: temperature [K], thermal stress [Pa], dissipated [J/m3]
 
 
 @role
@@ -37,51 +39,118 @@ for kind in FLOW:
         flows.register(kind, flows_always)
 
 
-@kernel(inline=True)
-def answer(body, i, e1, e2, e3, grow, dt, report):
-    """Return map, heating and principal Kirchhoff stresses of particle i: (e1, e2, e3, t1, t2, t3)."""
-    trace_before = e1 + e2 + e3 - math.log1p(grow)
-    thermal = thermal_stress(body.expansion, body.thermal, i)
-    lost = 0.0
-    if dt > 0.0:
-        theta = temperature(body.thermal, i)
-        e1, e2, e3, lost, ok = flow(settled(body.flow, body.particles.J[i]), warmed(body.elastic, theta), e1, e2, e3, thermal, theta, dt)
-        if not ok:
-            fail(report, RETURN_MAP, i)
-        density = body.particles.m[i] / body.particles.V0[i]
-        gained = heat_locally(body.heating, body.thermal, i, density, e1 + e2 + e3 - trace_before, lost)
-        report[HEATED] += body.particles.V0[i] * gained
-        report[DISSIPATED] += body.particles.V0[i] * lost
-        latch(body.expansion, body.thermal, i)
-        thermal = thermal_stress(body.expansion, body.thermal, i)
-    report[STRAIN] = min(report[STRAIN], e1, e2, e3)
-    t1, t2, t3 = stress(warmed(body.elastic, temperature(body.thermal, i)), e1, e2, e3, thermal)
-    return e1, e2, e3, t1, t2, t3
+@role
+def warms(heating):
+    """Whether strain and flow change the temperature: a constant at compile time."""
+    raise TypeError(f"no heating in {type(heating).__name__}")
+
+
+@warms.register(NoHeating)
+def _(heating):
+    return False
+
+
+@warms.register(Heating)
+@warms.register(GridHeating)
+def _(heating):
+    return True
 
 
 @role
-def carry_surface(surface, chunk, i, p, dt):
-    """F <- (1 + dt L) F where a surface needs it."""
+def latches(expansion):
+    """Whether the highest temperature so far is remembered: a constant at compile time."""
+    raise TypeError(f"no thermal stress in {type(expansion).__name__}")
+
+
+@latches.register(NoExpansion)
+@latches.register(Expansion)
+def _(expansion):
+    return False
+
+
+@latches.register(Latched)
+def _(expansion):
+    return True
+
+
+@latches.register(Softening)
+def _(expansion):
+    return latches(expansion.inner)
+
+
+@kernel(inline=True)
+def tell(body, chunk, first, p, count):
+    """Temperatures and thermal stresses of eight particles in their rows of chunk.e; what lies behind the last one repeats it."""
+    e, n = chunk.e, chunk.e.shape[1]
+    for q in range(p, p + EIGHT):
+        i = first + min(q, count - 1)
+        poke(e, WARMTH * n + q, temperature(body.thermal, i))
+        poke(e, PRESSURE * n + q, thermal_stress(body.expansion, body.thermal, i))
+
+
+@kernel(inline=True)
+def blame(report, code, good, i, count):
+    """Fail the first of the particles from i whose lane is not good."""
+    for k in range(min(EIGHT, count)):
+        if not item(good, k) > 0.5:
+            fail(report, code, i + k)
+
+
+@kernel(inline=True)
+def heat_all(body, chunk, first, p, count, report):
+    """Heat the particles p.. of the chunk by what they stretched (row GROW) and dissipated (row LOST); remember what they reached."""
+    e, n, particles = chunk.e, chunk.e.shape[1], body.particles
+    for q in range(p, min(p + EIGHT, count)):
+        i, lost = first + q, float(peek(e, LOST * n + q))
+        V0 = peek(particles.V0, i)
+        gained = heat_locally(body.heating, body.thermal, i, peek(particles.m, i) / V0, peek(e, GROW * n + q), lost)
+        report[HEATED] += V0 * gained
+        report[DISSIPATED] += V0 * lost
+        latch(body.expansion, body.thermal, i)
+
+
+@kernel(inline=True)
+def answer(body, chunk, first, p, count, trace, deviator, dt, report):
+    """Return map and heating of eight particles, from the trace of the trial strain and the norm of its deviator.
+
+    (trace, share of the deviator that is left, flowed 0 or 1, lam, mu, thermal stress), all as lanes.
+    """
+    e, n = chunk.e, chunk.e.shape[1]
+    tell(body, chunk, first, p, count)
+    theta, thermal = load8(e, WARMTH * n + p), load8(e, PRESSURE * n + p)
+    lam, mu = moduli_lanes(body.elastic, theta)
+    share, flowed = like(trace, 1.0), like(trace, 0.0)
+    if dt > 0.0:
+        before = trace
+        trace, share, lost, flowed, good = flow_lanes(body.flow, trace, deviator, lam, mu, thermal, theta, load8(e, JACOBIAN * n + p), dt)
+        if not least(good) > 0.5:
+            blame(report, RETURN_MAP, good, first + p, count - p)
+        if warms(body.heating) or latches(body.expansion) or most(flowed) > 0.5:
+            store(e, LOST * n + p, lost)
+            if warms(body.heating):
+                store(e, GROW * n + p, (trace - before) + log1p(load8(e, GROW * n + p)))
+            heat_all(body, chunk, first, p, count, report)
+        if warms(body.heating):
+            tell(body, chunk, first, p, count)
+            theta, thermal = load8(e, WARMTH * n + p), load8(e, PRESSURE * n + p)
+            lam, mu = moduli_lanes(body.elastic, theta)
+    return trace, share, flowed, lam, mu, thermal
+
+
+@role(inline=True)
+def carry_surface(surface, chunk, first, count, dt, D):
+    """F of the particles where a surface needs it, once nothing else is wanted of chunk.e."""
     raise TypeError(f"no surface {type(surface).__name__}")
 
 
 @carry_surface.register(NoExchange)
-def _(surface, chunk, i, p, dt):
+def _(surface, chunk, first, count, dt, D):
     return None
 
 
 @carry_surface.register(Surface)
-def _(surface, chunk, i, p, dt):
-    D = surface.F.shape[1]
-    for d in range(D):
-        f0, f1, f2 = surface.F[i, 0, d], surface.F[i, min(1, D - 1), d], surface.F[i, D - 1, d]
-        for c in range(D):
-            change = chunk.L[c, 0, p] * f0
-            if D > 1:
-                change += chunk.L[c, 1, p] * f1
-            if D > 2:
-                change += chunk.L[c, 2, p] * f2
-            surface.F[i, c, d] += dt * change
+def _(surface, chunk, first, count, dt, D):
+    carry_all(surface.F, chunk, first, count, dt, D)
 
 
 @role(inline=True)
@@ -96,110 +165,87 @@ def react_volume(elastic, body, chunk, first, count, dt, report):
     raise TypeError(f"no response of {type(elastic).__name__}")
 
 
+@kernel(inline=True)
+def size3(d1, d2, d3):
+    """Norm of a deviator, zero where its squares would be subnormal."""
+    keep = below(like(d1, 1e-17), maximum(maximum(absolute(d1), absolute(d2)), absolute(d3)))
+    d1, d2, d3 = keep * d1, keep * d2, keep * d3
+    return sqrt(fma(d1, d1, fma(d2, d2, d3 * d3)))
+
+
 @react_plane.register(Hencky)
 @react_plane.register(HenckyWarm)
 def _(elastic, body, chunk, first, count, dt, report):
-    e, S = chunk.e, chunk.S
-    for p in range(count):
-        i = first + p
-        l1, l2, c, s = eigen2(e[0, p], e[1, p], e[3, p])
-        if not min(l1, l2, e[2, p]) > -1.0:
-            fail(report, INVERTED, i)
+    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    third, lowest, minus = real(1.0 / 3.0), splat8(real(0)), splat8(real(-1))
+    for p in range(0, count, EIGHT):
+        xx, yy, zz, xy = load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p)
+        l1, l2, c, s = eigen2(xx, yy, xy)
+        sound = below(minus, minimum(minimum(l1, l2), zz))
+        if not least(sound) > 0.5:
+            blame(report, INVERTED, sound, first + p, count - p)
             return
-        e1, e2, e3 = 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(e[2, p])
-        e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, e[GROW, p], dt, report)
+        e1, e2, e3 = 0.5 * log1p(l1), 0.5 * log1p(l2), 0.5 * log1p(zz)
+        lowest = minimum(minimum(minimum(e1, e2), e3), lowest)
+        d1, d2, d3 = third * ((e1 - e2) + (e1 - e3)), third * ((e2 - e1) + (e2 - e3)), third * ((e3 - e1) + (e3 - e2))
+        trace, share, flowed, lam, mu, thermal = answer(body, chunk, first, p, count, e1 + e2 + e3, size3(d1, d2, d3), dt, report)
         if report[CODE] != 0.0:
             return
-        if flows(body.flow):
-            e[0, p], e[1, p], e[3, p] = compose2(math.expm1(2.0 * e1), math.expm1(2.0 * e2), c, s)
-            e[2, p] = math.expm1(2.0 * e3)
-        carry_surface(body.surface, chunk, i, p, dt)
-        xx, yy, xy = compose2(t1, t2, c, s)
-        S[0, 0, p], S[0, 1, p], S[1, 0, p], S[1, 1, p], e[ACROSS, p] = xx, xy, xy, yy, t3
+        bulk, double = lam * trace - thermal, 2.0 * mu
+        if most(flowed) > 0.5:
+            e1, e2, e3 = fma(share, d1, third * trace), fma(share, d2, third * trace), fma(share, d3, third * trace)
+            nxx, nyy, nxy = compose2(expm1(2.0 * e1), expm1(2.0 * e2), c, s)
+            store(e, p, choose(flowed, nxx, xx))
+            store(e, n + p, choose(flowed, nyy, yy))
+            store(e, 2 * n + p, choose(flowed, expm1(2.0 * e3), zz))
+            store(e, 3 * n + p, choose(flowed, nxy, xy))
+        xx, yy, xy = compose2(fma(double, e1, bulk), fma(double, e2, bulk), c, s)
+        store(S, p, xx)
+        store(S, n + p, xy)
+        store(S, 2 * n + p, xy)
+        store(S, 3 * n + p, yy)
+        store(e, ACROSS * n + p, fma(double, e3, bulk))
+    report[STRAIN] = min(report[STRAIN], least(lowest))
     deliver_plane(body.particles, chunk, first, count)
+    carry_surface(body.surface, chunk, first, count, dt, 2)
 
 
 @react_volume.register(Hencky)
 @react_volume.register(HenckyWarm)
 def _(elastic, body, chunk, first, count, dt, report):
-    e, S = chunk.e, chunk.S
     if not flows(body.flow):
         deliver_volume(body.particles, chunk, first, count)
-    eigen_chunk(e, count)
-    for p in range(count):
-        i = first + p
-        if not min(e[0, p], e[1, p], e[2, p]) > -1.0:
-            fail(report, INVERTED, i)
+    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    lowest, minus = splat8(real(0)), splat8(real(-1))
+    for p in range(0, count, EIGHT):
+        B = (load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p), load8(e, 4 * n + p), load8(e, 5 * n + p))
+        strain, sound = logarithm3(B)
+        sound = below(minus, sound)
+        if not least(sound) > 0.5:
+            blame(report, INVERTED, sound, first + p, count - p)
             return
-        ax, ay, az, bx, by, bz = e[3, p], e[4, p], e[5, p], e[6, p], e[7, p], e[8, p]
-        e1, e2, e3 = 0.5 * math.log1p(e[0, p]), 0.5 * math.log1p(e[1, p]), 0.5 * math.log1p(e[2, p])
-        e1, e2, e3, t1, t2, t3 = answer(body, i, e1, e2, e3, e[GROW, p], dt, report)
+        mean, D = split(strain)
+        size = norm(D, largest(D))
+        lowest = minimum(lowest3(strain, mean, size), lowest)
+        trace, share, flowed, lam, mu, thermal = answer(body, chunk, first, p, count, 3.0 * mean, size, dt, report)
         if report[CODE] != 0.0:
             return
-        carry_surface(body.surface, chunk, i, p, dt)
-        xx, yy, zz, xy, yz, xz = compose3(t1, t2, t3, ax, ay, az, bx, by, bz)
-        S[0, 0, p], S[0, 1, p], S[0, 2, p] = xx, xy, xz
-        S[1, 0, p], S[1, 1, p], S[1, 2, p] = xy, yy, yz
-        S[2, 0, p], S[2, 1, p], S[2, 2, p] = xz, yz, zz
-        if flows(body.flow):
-            B = compose3(math.expm1(2.0 * e1), math.expm1(2.0 * e2), math.expm1(2.0 * e3), ax, ay, az, bx, by, bz)
-            e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p] = B
+        bulk, double = fma(lam, trace, 2.0 / 3.0 * mu * trace) - thermal, 2.0 * mu * share
+        xy, yz, xz = double * D[3], double * D[4], double * D[5]
+        store(S, p, fma(double, D[0], bulk))
+        store(S, n + p, xy)
+        store(S, 2 * n + p, xz)
+        store(S, 3 * n + p, xy)
+        store(S, 4 * n + p, fma(double, D[1], bulk))
+        store(S, 5 * n + p, yz)
+        store(S, 6 * n + p, xz)
+        store(S, 7 * n + p, yz)
+        store(S, 8 * n + p, fma(double, D[2], bulk))
+        if most(flowed) > 0.5:
+            grown = exponential3(1.0 / 3.0 * trace, (share * D[0], share * D[1], share * D[2], share * D[3], share * D[4], share * D[5]))
+            for k in range(6):
+                store(e, k * n + p, choose(flowed, grown[k], B[k]))
+    report[STRAIN] = min(report[STRAIN], least(lowest))
     if flows(body.flow):
         deliver_volume(body.particles, chunk, first, count)
-
-
-@react_plane.register(NeoHookean)
-def _(elastic, body, chunk, first, count, dt, report):
-    deliver_plane(body.particles, chunk, first, count)
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
-    mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
-    for p in range(0, count, EIGHT):
-        J = load8(e, JACOBIAN * n + p)
-        # Gershgorin: no principal b - 1 is above the largest sum of a row of |B|.
-        shear = absolute(load8(e, 3 * n + p))
-        rows = maximum(maximum(load8(e, p), load8(e, n + p)) + shear, load8(e, 2 * n + p))
-        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * (one + rows), stiff)
-        pressure = lam * J * (J - one)
-        store(S, p, fma(mu, load8(e, p), pressure))
-        store(S, 3 * n + p, fma(mu, load8(e, n + p), pressure))
-        store(e, ACROSS * n + p, fma(mu, load8(e, 2 * n + p), pressure))
-        xy = mu * load8(e, 3 * n + p)
-        store(S, n + p, xy)
-        store(S, 2 * n + p, xy)
-    report[STRAIN] = min(report[STRAIN], 1.0 - most(stiff) / (elastic.lam + 2.0 * elastic.mu))
-    for p in range(count):
-        carry_surface(body.surface, chunk, first + p, p, dt)
-
-
-@react_volume.register(NeoHookean)
-def _(elastic, body, chunk, first, count, dt, report):
-    deliver_volume(body.particles, chunk, first, count)
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
-    mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
-    for p in range(0, count, EIGHT):
-        J = load8(e, JACOBIAN * n + p)
-        xy, yz, xz = absolute(load8(e, 3 * n + p)), absolute(load8(e, 4 * n + p)), absolute(load8(e, 5 * n + p))
-        rows = maximum(maximum(load8(e, p) + xy + xz, load8(e, n + p) + xy + yz), load8(e, 2 * n + p) + xz + yz)
-        stiff = maximum(lam * J * (J + J - one) + (mu + mu) * (one + rows), stiff)
-        pressure = lam * J * (J - one)
-        store(S, p, fma(mu, load8(e, p), pressure))
-        store(S, 4 * n + p, fma(mu, load8(e, n + p), pressure))
-        store(S, 8 * n + p, fma(mu, load8(e, 2 * n + p), pressure))
-        xy, yz, xz = mu * load8(e, 3 * n + p), mu * load8(e, 4 * n + p), mu * load8(e, 5 * n + p)
-        store(S, n + p, xy)
-        store(S, 3 * n + p, xy)
-        store(S, 5 * n + p, yz)
-        store(S, 7 * n + p, yz)
-        store(S, 2 * n + p, xz)
-        store(S, 6 * n + p, xz)
-    report[STRAIN] = min(report[STRAIN], 1.0 - most(stiff) / (elastic.lam + 2.0 * elastic.mu))
-    for p in range(count):
-        carry_surface(body.surface, chunk, first + p, p, dt)
-
-
-@kernel
-def eigen_chunk(e, count):
-    """Values and first two axes of `count` tensors, in place: a loop of its own over contiguous components: it vectorises (65 ns a tensor, not 235)."""
-    for p in range(count):
-        l1, l2, l3, ax, ay, az, bx, by, bz, _, _, _ = eigen3(e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p])
-        e[0, p], e[1, p], e[2, p], e[3, p], e[4, p], e[5, p], e[6, p], e[7, p], e[8, p] = l1, l2, l3, ax, ay, az, bx, by, bz
+    carry_surface(body.surface, chunk, first, count, dt, 3)

@@ -8,10 +8,14 @@ Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau 
 import math
 
 from mpm.basis import inverse_moment
-from mpm.integrate.react import ACROSS, answer, carry_surface, flows, react_plane, react_volume
-from mpm.integrate.strain import CODE, HOOP, guard, strain_plane, strain_volume
+from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.integrate import react_neo_hookean  # noqa: F401 - registers the law
+from mpm.integrate.react import ACROSS, carry_surface, flows, react_plane, react_volume
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, HOOP, STRAIN, fail, guard, strain_plane, strain_volume
 from mpm.jit import kernel, role
 from mpm.lanes import EIGHT, load8, peek, poke, store
+from mpm.materials import flow, settled, stress, warmed
+from mpm.outcome import RETURN_MAP
 from mpm.state import Axisymmetric, Line, Plane, Volume
 from mpm.tensors import dilation1, push1
 from mpm.transfer import uses_basis_gradient
@@ -42,6 +46,28 @@ def load_chunk(space, gradient, particles, chunk, first, count, dt):
     chunk.f[:] = 0.0
 
 
+@kernel(inline=True)
+def answer(body, i, e1, e2, e3, grow, dt, report):
+    """Return map, heating and principal Kirchhoff stresses of particle i: (e1, e2, e3, t1, t2, t3)."""
+    trace_before = e1 + e2 + e3 - math.log1p(grow)
+    thermal = thermal_stress(body.expansion, body.thermal, i)
+    lost = 0.0
+    if dt > 0.0:
+        theta = temperature(body.thermal, i)
+        e1, e2, e3, lost, ok = flow(settled(body.flow, body.particles.J[i]), warmed(body.elastic, theta), e1, e2, e3, thermal, theta, dt)
+        if not ok:
+            fail(report, RETURN_MAP, i)
+        density = body.particles.m[i] / body.particles.V0[i]
+        gained = heat_locally(body.heating, body.thermal, i, density, e1 + e2 + e3 - trace_before, lost)
+        report[HEATED] += body.particles.V0[i] * gained
+        report[DISSIPATED] += body.particles.V0[i] * lost
+        latch(body.expansion, body.thermal, i)
+        thermal = thermal_stress(body.expansion, body.thermal, i)
+    report[STRAIN] = min(report[STRAIN], e1, e2, e3)
+    t1, t2, t3 = stress(warmed(body.elastic, temperature(body.thermal, i)), e1, e2, e3, thermal)
+    return e1, e2, e3, t1, t2, t3
+
+
 @respond.register(Line)
 def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
@@ -60,8 +86,8 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
         if flows(body.flow):
             B = (math.expm1(2.0 * e1), math.expm1(2.0 * e2), math.expm1(2.0 * e3))
         particles.B[i, 0], particles.B[i, 1], particles.B[i, 2] = B
-        carry_surface(body.surface, chunk, i, p, dt)
         chunk.S[0, 0, p] = t1
+    carry_surface(body.surface, chunk, first, count, dt, 1)
     load_chunk(space, gradient, particles, chunk, first, count, next_dt)
 
 

@@ -6,6 +6,7 @@ Roles (the law chooses the function; all work compiled and in plain Python)
           moduli(law) -> lam, mu
           flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
                                                                                       flow laws: no_flow, radial, clipped
+          moduli_lanes(law, theta), flow_lanes(law, trace, deviator, ...), values(law, theta): the same over lanes of eight particles (mpm.lanes)
           warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
 Shapes    e: principal elastic Hencky strains [-]; t: principal Kirchhoff stresses [Pa], in the same order, any order
@@ -24,7 +25,7 @@ from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.returns import return_map
-from mpm.materials.roles import energy, enthalpy, flow, moduli, settled, stress, temperature_of, value, warmed
+from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, temperature_of, value, warmed
 from mpm.materials.warm import HenckyWarm
 
 ELASTIC = (Hencky,)  # those that may flow; NeoHookean is elastic only
@@ -32,6 +33,7 @@ FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
-    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow", "Porous",
-    "Table", "energy", "enthalpy", "flow", "moduli", "return_map", "settled", "stress", "table", "temperature_of", "value", "warmed",
+    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow",
+    "Porous", "Table", "energy", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes", "return_map", "settled",
+    "stress", "table", "temperature_of", "value", "warmed",
 ]  # fmt: skip

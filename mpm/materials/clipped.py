@@ -8,8 +8,9 @@ import math
 from typing import Any, NamedTuple
 
 from mpm.jit import kernel
-from mpm.materials.ellipse import excess, invariants, slowness, strains
-from mpm.materials.roles import flow, moduli, value
+from mpm.lanes import EIGHT, absolute, below, item, like, most, put
+from mpm.materials.ellipse import admissible, excess, excess_lanes, invariants, pressures, slowness, strains
+from mpm.materials.roles import aspects, flow, flow_lanes, moduli, value, values
 
 MOST = 200  # steps; 72 is the most seen
 FAR = 1e150  # stands for T = inf, and its inverse for T = 0, where a bracket is halved
@@ -122,3 +123,29 @@ def strain_clipped(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
 def flow_clipped(law, elastic, e1, e2, e3, thermal, theta, dt):
     lam, mu = moduli(elastic)
     return strain_clipped(e1, e2, e3, lam, mu, value(law.M, theta), value(law.p0, theta), value(law.eta, theta), dt, thermal)
+
+
+@kernel(inline=True)
+def clipped_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
+    """`strain_clipped` over lanes: see flow_lanes (mpm.materials.roles). Those that flow go one by one: a bracketed root takes each its own steps."""
+    good, K = admissible(M, p0, eta), lam + 2.0 / 3.0 * mu
+    p, q = pressures(trace, deviator, K, mu, thermal)
+    outside = good * below(like(trace, 0.0), excess_lanes(absolute(p) / (p0 * M), q / M))
+    share, lost, flowed = like(trace, 1.0), like(trace, 0.0), like(trace, 0.0)
+    if most(outside) > 0.5:
+        for k in range(EIGHT):
+            if item(outside, k) > 0.5:
+                bulk, shear, size = item(K, k), item(mu, k), item(q, k)
+                mapped, left, dp, dq, steps = map_clipped(item(p, k), size, bulk, shear, item(M, k), item(p0, k), item(eta, k), dt)
+                work = mapped * dp / bulk + left * dq / (3.0 * shear)
+                if steps == MOST or not math.isfinite(float(work / item(M, k))):
+                    good = put(good, k, 0.0)
+                elif steps > 0:
+                    trace = put(trace, k, (item(thermal, k) - mapped) / bulk)
+                    share, lost, flowed = put(share, k, left / size if size > 0.0 else 0.0), put(lost, k, work), put(flowed, k, 1.0)
+    return trace, share, lost, flowed, good
+
+
+@flow_lanes.register(EllipseClipped)
+def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+    return clipped_lanes(trace, deviator, lam, mu, values(law.M, theta), aspects(law.p0, theta, J), values(law.eta, theta), dt, thermal)

@@ -8,6 +8,7 @@ re-associate, leave that intact: tests/materials/test_extremes.py would show it 
 import math
 
 from mpm.jit import kernel
+from mpm.lanes import below, like, maximum, minimum
 
 SQRT6 = math.sqrt(6.0)
 
@@ -40,3 +41,23 @@ def strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal):
     share = q / q_trial if q_trial > 0.0 else 0.0
     mean = (thermal - p) / (3.0 * K)
     return mean + share * d1, mean + share * d2, mean + share * d3, p * dp / K + q * dq / (3.0 * mu)
+
+
+@kernel(inline=True)
+def excess_lanes(a, b):
+    """`excess` over lanes."""
+    high, low = maximum(a, b), minimum(a, b)
+    return (high - 1.0) * (high + 1.0) + low * low
+
+
+@kernel(inline=True)
+def pressures(trace, deviator, K, mu, thermal):
+    """p and q [Pa] over lanes, of the trace of the strain and the norm of its deviator."""
+    return thermal - K * trace, SQRT6 * mu * deviator
+
+
+@kernel(inline=True)
+def admissible(M, p0, eta):
+    """1 where M > 0, p0 > 0 and eta >= 0, over lanes; 0 where one is NaN."""
+    nought = like(M, 0.0)
+    return below(nought, M) * below(nought, p0) * below(like(M, -1e-30), eta)

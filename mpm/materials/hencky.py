@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from mpm.materials.roles import energy, moduli, stress
+from mpm.lanes import like
+from mpm.materials.roles import energy, moduli, moduli_lanes, stress
 
 
 class Hencky(NamedTuple):
@@ -31,3 +32,8 @@ def energy_hencky(law, e1, e2, e3):
 @moduli.register(Hencky)
 def moduli_hencky(law):
     return law.lam, law.mu
+
+
+@moduli_lanes.register(Hencky)
+def _(law, theta):
+    return like(theta, law.lam), like(theta, law.mu)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import kernel
-from mpm.materials.roles import enthalpy, temperature_of, value
+from mpm.lanes import EIGHT, absolute, below, choose, exponential, item, like, put
+from mpm.materials.roles import enthalpy, temperature_of, value, values
 
 SQRT2 = math.sqrt(2.0)
 SQRT2PI = math.sqrt(2.0 * math.pi)
@@ -110,14 +111,14 @@ def value_constant(law, theta):
 @value.register(Bump)
 def value_bump(law, theta):
     z = (theta - law.at) / law.width
-    return law.base + law.heat / (law.width * SQRT2PI) * math.exp(-0.5 * z * z)
+    return law.base + law.heat / (law.width * SQRT2PI) * exponential(-0.5 * z * z)
 
 
 @value.register(Logistic)
 def value_logistic(law, theta):
     z = (theta - law.at) / law.width
-    tail = math.exp(-abs(z))  # never overflows
-    return law.low + (law.high - law.low) * ((1.0 if z >= 0.0 else tail) / (1.0 + tail))
+    tail = exponential(-absolute(z))  # never overflows
+    return law.low + (law.high - law.low) * (choose(below(z, like(z, 0.0)), tail, like(z, 1.0)) / (1.0 + tail))
 
 
 @value.register(Table)
@@ -125,6 +126,24 @@ def value_table(law, theta):
     k = piece(law.theta, theta)
     u = min(max(theta, law.theta[0]), law.theta[-1]) - law.theta[k]
     return law.c[k, 0] + u * (law.c[k, 1] + u * (law.c[k, 2] + u * law.c[k, 3]))
+
+
+@values.register(Constant)
+def _(law, theta):
+    return like(theta, law.constant)
+
+
+@values.register(Bump)
+@values.register(Logistic)
+def _(law, theta):
+    return value(law, theta)
+
+
+@values.register(Table)
+def _(law, theta):
+    for k in range(EIGHT):
+        theta = put(theta, k, value(law, item(theta, k)))
+    return theta
 
 
 @enthalpy.register(Constant)

@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from mpm.materials.roles import flow
+from mpm.lanes import like
+from mpm.materials.roles import flow, flow_lanes
 
 
 class NoFlow(NamedTuple):
@@ -12,3 +13,9 @@ class NoFlow(NamedTuple):
 @flow.register(NoFlow)
 def flow_none(law, elastic, e1, e2, e3, thermal, theta, dt):
     return e1, e2, e3, 0.0, True
+
+
+@flow_lanes.register(NoFlow)
+def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+    one, nought = like(trace, 1.0), like(trace, 0.0)
+    return trace, one, nought, nought, one

@@ -11,11 +11,12 @@ import math
 from typing import NamedTuple
 
 from mpm.jit import kernel
+from mpm.lanes import EIGHT, item, put
 from mpm.materials.clipped import EllipseClipped
 from mpm.materials.laws import Bump, Constant, Logistic, Table
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.radial import EllipseRadial
-from mpm.materials.roles import at_volume, settled
+from mpm.materials.roles import aspects, at_volume, settled, values
 
 DENSEST = 1e3  # p0 where the pores are closed: the largest the return maps are for; below 1e-6 of porosity with n = 2
 
@@ -42,13 +43,25 @@ def same(law, J):
     return law
 
 
+def same_lanes(law, theta, J):
+    return values(law, theta)
+
+
 for kind in (Constant, Bump, Logistic, Table):
     at_volume.register(kind, same)
+    aspects.register(kind, same_lanes)
 
 
 @at_volume.register(Porous)
 def _(law, J):
     return Constant(aspect(law.solid / J, law.exponent))
+
+
+@aspects.register(Porous)
+def _(law, theta, J):
+    for k in range(EIGHT):
+        J = put(J, k, aspect(law.solid / item(J, k), law.exponent))
+    return J
 
 
 @settled.register(NoFlow)

@@ -8,8 +8,9 @@ import math
 from typing import Any, NamedTuple
 
 from mpm.jit import kernel
-from mpm.materials.ellipse import excess, invariants, slowness, strains
-from mpm.materials.roles import flow, moduli, value
+from mpm.lanes import absolute, below, choose, like, maximum, most, precision, sqrt
+from mpm.materials.ellipse import admissible, excess, excess_lanes, invariants, pressures, slowness, strains
+from mpm.materials.roles import aspects, flow, flow_lanes, moduli, value, values
 
 MOST = 60  # Newton steps; 13 is the most seen, in a million extreme states
 
@@ -87,3 +88,58 @@ def strain_radial(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
 def flow_radial(law, elastic, e1, e2, e3, thermal, theta, dt):
     lam, mu = moduli(elastic)
     return strain_radial(e1, e2, e3, lam, mu, value(law.M, theta), value(law.p0, theta), value(law.eta, theta), dt, thermal)
+
+
+@kernel(inline=True)
+def overstress_lanes(a1, a2, k1, k2, x, start, active):
+    """`overstress` over the lanes where `active` is 1, and 1 where it converged: (g, converged). start = excess of (a1, a2)."""
+    one, nought = like(x, 1.0), like(x, 0.0)
+    enough = 0.1 * sqrt(precision(x))  # quadratic: the next step would be below round-off
+    s = sqrt(a1 * a1 + a2 * a2)
+    g = maximum(maximum((a1 - 1.0) / (k1 + a1 * x), (a2 - 1.0) / (k2 + a2 * x)), start / (1.0 + s) / (maximum(k1, k2) + s * x))
+    g = maximum(g, nought)
+    for _ in range(1, MOST):
+        v1, v2 = 1.0 / (1.0 + k1 * g), 1.0 / (1.0 + k2 * g)
+        b1, b2 = a1 * v1, a2 * v2
+        s = sqrt(b1 * b1 + b2 * b2)
+        near = start - (b1 * b1 * k1 * g * (2.0 + k1 * g) + b2 * b2 * k2 * g * (2.0 + k2 * g))
+        first = b2 * b2 + (((a1 - 1.0) - k1 * g) * v1) * (b1 + 1.0)
+        second = b1 * b1 + (((a2 - 1.0) - k2 * g) * v2) * (b2 + 1.0)
+        r = choose(below(start, one), near, choose(below(b1, b2), second, first))
+        slope = (k1 * b1 * b1 * v1 + k2 * b2 * b2 * v2) / (s * s * s) + x
+        step = (r / (s * (1.0 + s)) - g * x) / slope
+        g = choose(active, g + step, g)
+        active = active * below(enough * g, step)
+        if most(active) < 0.5:
+            break
+    return g, one - active
+
+
+@kernel(inline=True)
+def radial_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
+    """`strain_radial` over lanes: see flow_lanes (mpm.materials.roles)."""
+    good, K = admissible(M, p0, eta), lam + 2.0 / 3.0 * mu
+    one, nought = like(trace, 1.0), like(trace, 0.0)
+    p, q = pressures(trace, deviator, K, mu, thermal)
+    a1, a2, x = absolute(p) / (p0 * M), q / M, eta / (K * dt)
+    start = excess_lanes(a1, a2)
+    flowed = good * below(nought, start) * below(x, like(x, 1e30))
+    share, lost = one, nought
+    if most(flowed) > 0.5:
+        k1, k2 = choose(flowed, 1.0 / (p0 * p0), one), choose(flowed, 3.0 * mu / K, one)
+        two = one + one
+        g, converged = overstress_lanes(
+            choose(flowed, a1, two), choose(flowed, a2, nought), k1, k2, choose(flowed, x, one), choose(flowed, start, two + one), flowed
+        )
+        c1, c2 = k1 * g, k2 * g
+        p, share = p / (1.0 + c1), choose(flowed, 1.0 / (1.0 + c2), one)
+        q = q * share
+        lost = choose(flowed, p * (c1 * p) / K + q * (c2 * q) / (3.0 * mu), nought)
+        good = good * converged * below(lost / M, like(lost, 1e37))
+        trace = choose(flowed, (thermal - p) / K, trace)
+    return trace, share, lost, flowed, good
+
+
+@flow_lanes.register(EllipseRadial)
+def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+    return radial_lanes(trace, deviator, lam, mu, values(law.M, theta), aspects(law.p0, theta, J), values(law.eta, theta), dt, thermal)

@@ -69,3 +69,31 @@ def enthalpy(law, theta):
 def temperature_of(law, h, guess):
     """The theta with enthalpy(law, theta) = h, to round-off, for a positive law: exact through any latent heat. `guess` [K] only saves time."""
     raise missing(law, "temperature_of")
+
+
+@role(inline=True)
+def values(law, theta):
+    """`value` over lanes of temperatures [K]."""
+    raise missing(law, "values")
+
+
+@role(inline=True)
+def aspects(law, theta, J):
+    """p0 over lanes of temperatures [K] and volume ratios [-]."""
+    raise missing(law, "aspects")
+
+
+@role(inline=True)
+def moduli_lanes(law, theta):
+    """`moduli` of the elastic law over lanes of temperatures [K]."""
+    raise missing(law, "moduli_lanes")
+
+
+@role(inline=True)
+def flow_lanes(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+    """`flow` over lanes, of the trace of the trial strain and the norm of its deviator: (trace, share, dissipated, flowed, good).
+
+    The strain at the end is trace/3 + share times the trial deviator. flowed 1 where anything flows: elsewhere trace is the trial one, bit for bit, and
+    share 1; good 0 where the map failed. dt > 0.
+    """
+    raise missing(law, "flow_lanes")

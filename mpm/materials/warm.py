@@ -7,7 +7,7 @@ Hencky's with its two numbers scaled. A linear expansion coefficient keeps its s
 from typing import Any, NamedTuple
 
 from mpm.materials.hencky import Hencky
-from mpm.materials.roles import value, warmed
+from mpm.materials.roles import moduli_lanes, value, values, warmed
 
 
 class HenckyWarm(NamedTuple):
@@ -31,3 +31,9 @@ def _(law, theta):
 def _(law, theta):
     E = value(law.E, theta)
     return Hencky(law.one.mu * E, law.one.lam * E)
+
+
+@moduli_lanes.register(HenckyWarm)
+def _(law, theta):
+    E = values(law.E, theta)
+    return law.one.lam * E, law.one.mu * E

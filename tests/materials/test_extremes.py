@@ -4,6 +4,7 @@ from decimal import Decimal, getcontext
 
 import numpy as np
 import pytest
+from states import states
 
 from mpm.jit import kernel
 from mpm.materials.clipped import MOST as MOST_CLIPPED
@@ -22,24 +23,6 @@ def map_many(clipped, s, out):
 
 
 MANY = 1_000_000 if hasattr(map_many, "signatures") else 3_000  # without JIT, for coverage
-
-
-def states(n, seed=0, nearest=-14):
-    """Rows (p_trial, q_trial, K, mu, M, p0, eta, dt): p0 in 1e-3..1e3, chi in 1e-12..1e12; trial states everywhere, at the axes and just off the ellipse."""
-    rng = np.random.default_rng(seed)
-
-    def decades(low, high):
-        return 10.0 ** rng.uniform(low, high, n)
-
-    M, p0, chi, omega, dt = decades(-2, 8), decades(-3, 3), decades(-12, 12), decades(-2, 5), decades(-7, 1)
-    mu = M * decades(0, 8)
-    K = 3 * mu * omega
-    where = rng.integers(0, 4, n)
-    phi = np.select([where == 1, where == 2], [decades(-12, 0), np.pi / 2 - decades(-12, 0)], rng.uniform(0, np.pi / 2, n))
-    size = np.where(rng.random(n) < 0.4, 1 + decades(nearest, 0), decades(0, 8))
-    p, q = p0 * M * size * np.cos(phi), M * size * np.abs(np.sin(phi))
-    p, q = np.where(where == 3, M * decades(-8, 8), p), np.where(where == 3, M * decades(-8, 8), q)
-    return np.stack([p * rng.choice([-1, 1], n), q, K, mu, M, p0, K * dt / chi, dt], axis=1)
 
 
 def mapped(clipped, s):

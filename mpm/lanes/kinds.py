@@ -53,6 +53,21 @@ def real(kind):
     return kind in (types.float32, types.float64)
 
 
+def one_or_number(a):
+    """The type of lanes or of a number, or None."""
+    return a if isinstance(a, LanesType) or real(a) else None
+
+
+def alike(a, b):
+    """The common type of lanes or of numbers, or None."""
+    return a if a == b and one_or_number(a) else None
+
+
+def lanes_of(a, b):
+    """The type of the lanes, of lanes and a number, or None."""
+    return a if isinstance(a, LanesType) and real(b) else b if isinstance(b, LanesType) and real(a) else None
+
+
 def holds(array):
     """Whether lanes may be read from this array."""
     return isinstance(array, types.Array) and array.layout == "C" and real(array.dtype)

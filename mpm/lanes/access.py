@@ -1,0 +1,151 @@
+"""Lanes from arrays and numbers, and back."""
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+
+from mpm.lanes.kinds import LanesType, halved, holds, operation, place, places, pointer, real, same
+
+
+def load4(array, at):
+    return array.reshape(-1)[at : at + 4].copy()
+
+
+def load8(array, at):
+    return array.reshape(-1)[at : at + 8].copy()
+
+
+def store(array, at, value):
+    array.reshape(-1)[at : at + len(value)] = value
+
+
+def load(context, builder, signature, arguments):
+    made = signature.return_type
+    return builder.load(pointer(context, builder, signature, arguments, made), align=made.dtype.bitwidth // 8)
+
+
+operation(load4, lambda array, at: LanesType(array.dtype, 4) if holds(array) else None, types.Array, types.Integer)(load)
+operation(load8, lambda array, at: LanesType(array.dtype, 8) if holds(array) else None, types.Array, types.Integer)(load)
+
+
+@operation(store, lambda array, at, a: types.none if holds(array) and isinstance(a, LanesType) and a.dtype == array.dtype else None,
+           types.Array, types.Integer, LanesType)  # fmt: skip
+def _(context, builder, signature, arguments):
+    lanes = signature.args[2]
+    builder.store(arguments[2], pointer(context, builder, signature, arguments, lanes), align=lanes.dtype.bitwidth // 8)
+    return context.get_dummy_value()
+
+
+def peek(array, at):
+    return array.reshape(-1)[at]
+
+
+def poke(array, at, x):
+    array.reshape(-1)[at] = x
+
+
+operation(peek, lambda array, at: array.dtype if holds(array) else None, types.Array, types.Integer)(lambda *around: around[1].load(place(*around)))
+
+
+@operation(poke, lambda array, at, x: types.none if holds(array) and real(x) else None, types.Array, types.Integer, types.Float)
+def _(context, builder, signature, arguments):
+    builder.store(context.cast(builder, arguments[2], signature.args[2], signature.args[0].dtype), place(context, builder, signature, arguments))
+    return context.get_dummy_value()
+
+
+def splat4(x):
+    return np.full(4, x)
+
+
+def splat8(x):
+    return np.full(8, x)
+
+
+def splat(context, builder, signature, arguments):
+    made = signature.return_type.llvm
+    first = builder.insert_element(ir.Constant(made, ir.Undefined), arguments[0], ir.Constant(ir.IntType(32), 0))
+    return builder.shuffle_vector(first, ir.Constant(made, ir.Undefined), places([0] * made.count))
+
+
+operation(splat4, lambda x: LanesType(x, 4) if real(x) else None, types.Float)(splat)
+operation(splat8, lambda x: LanesType(x, 8) if real(x) else None, types.Float)(splat)
+
+
+def four(a, b, c, d):
+    return np.array([a, b, c, d], dtype=np.result_type(a, b, c, d))
+
+
+@operation(four, lambda a, b, c, d: LanesType(a, 4) if real(a) and a == b == c == d else None, *[types.Float] * 4)
+def _(context, builder, signature, arguments):
+    made = ir.Constant(signature.return_type.llvm, ir.Undefined)
+    for k, x in enumerate(arguments):
+        made = builder.insert_element(made, x, ir.Constant(ir.IntType(32), k))
+    return made
+
+
+def join(a, b):
+    return np.concatenate((a, b))
+
+
+def low(a):
+    return a[: len(a) // 2]
+
+
+def high(a):
+    return a[len(a) // 2 :]
+
+
+def shuffled(first, last):
+    """LLVM side that takes the lanes first..last-1 of its arguments, one after the other; both count in halves of the first argument."""
+
+    def generate(context, builder, signature, arguments):
+        half = signature.args[0].count / 2
+        other = arguments[1] if len(arguments) > 1 else ir.Constant(signature.args[0].llvm, ir.Undefined)
+        return builder.shuffle_vector(arguments[0], other, places(list(range(int(first * half), int(last * half)))))
+
+    return generate
+
+
+operation(join, lambda a, b: LanesType(a.dtype, 2 * a.count) if same(a, b) else None, LanesType, LanesType)(shuffled(0, 4))
+operation(low, halved, LanesType)(shuffled(0, 1))
+operation(high, halved, LanesType)(shuffled(1, 2))
+
+
+def item(a, k):
+    return a[k]
+
+
+@operation(item, lambda a, k: a.dtype if isinstance(a, LanesType) else None, LanesType, types.Integer)
+def _(context, builder, signature, arguments):
+    return builder.extract_element(arguments[0], context.cast(builder, arguments[1], signature.args[1], types.int32))
+
+
+def put(a, k, x):
+    made = a.copy()
+    made[k] = x
+    return made
+
+
+@operation(put, lambda a, k, x: a if isinstance(a, LanesType) else None, LanesType, types.Integer, types.Float)
+def _(context, builder, signature, arguments):
+    lanes, k, x = signature.args
+    number = context.cast(builder, arguments[2], x, lanes.dtype)
+    return builder.insert_element(arguments[0], number, context.cast(builder, arguments[1], k, types.int32))
+
+
+def transposed(a, b, c, d):
+    return tuple(np.stack((a, b, c, d), axis=1))
+
+
+@operation(transposed, lambda a, b, c, d: types.UniTuple(a, 4) if same(a, b) == same(c, d) == a and a.count == 4 else None, *[LanesType] * 4)
+def _(context, builder, signature, arguments):
+    """In two rounds of shuffles, four each."""
+    a, b, c, d = arguments
+
+    def mixed(x, y, order):
+        return builder.shuffle_vector(x, y, places(order))
+
+    even, odd = [0, 4, 2, 6], [1, 5, 3, 7]
+    p, q, r, s = mixed(a, b, even), mixed(a, b, odd), mixed(c, d, even), mixed(c, d, odd)
+    near, far = [0, 1, 4, 5], [2, 3, 6, 7]
+    return context.make_tuple(builder, signature.return_type, [mixed(p, r, near), mixed(q, s, near), mixed(p, r, far), mixed(q, s, far)])
