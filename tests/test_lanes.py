@@ -5,9 +5,35 @@ import pytest
 
 from mpm.jit import kernel
 from mpm.lanes import (
-    absolute, below, choose, exponential, expm1, floor, fma, four, high, item, join, least, like, load4, load8, log1p, low, maximum, minimum, most, peek, poke,
-    precision, put, splat4, splat8, sqrt, store,
-)  # fmt: skip
+    absolute,
+    below,
+    choose,
+    expm1,
+    exponential,
+    floor,
+    fma,
+    four,
+    high,
+    item,
+    join,
+    least,
+    like,
+    load4,
+    load8,
+    log1p,
+    low,
+    maximum,
+    minimum,
+    most,
+    peek,
+    poke,
+    precision,
+    put,
+    splat4,
+    splat8,
+    sqrt,
+    store,
+)
 
 
 @kernel

@@ -64,4 +64,5 @@ __all__ = [
     "splat8",
     "sqrt",
     "store",
+    "transposed",
 ]  # fmt: skip

@@ -74,7 +74,7 @@ def test_return_maps(clipped, real):
     thermal, out, one = np.zeros(s.shape[1], real), np.zeros((5, s.shape[1]), real), np.zeros((4, s.shape[1]))
     map_lanes(clipped, s, thermal, out)
     map_each(clipped, s, thermal, one)
-    few = (16 if real is np.float32 else 2000 if clipped else 64) * np.finfo(real).eps  # clipped ends at 1e-14 of its angle, worth thirty times that in p at worst
+    few = (16 if real is np.float32 else 2000 if clipped else 64) * np.finfo(real).eps  # clipped ends at 1e-14 of its angle: up to thirty times that in p
     flowed = out[3] == 1
     assert (out[4] == 1).all() and 0.2 < flowed.mean() < 0.99
     assert ((one[3] > 0) != flowed).mean() < 1e-3  # round-off on the ellipse itself
