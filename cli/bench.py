@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
-from mpm_cli.options import Json, Set, load
+from mpm_cli.options import Json, Set, Threads, load
 from mpm_cli.talk import document, say, warn
 
 Config = Annotated[Path | None, typer.Argument(metavar="[CONFIG]", help="YAML file of an experiment; without it, a thrown cube.", show_default=False)]
@@ -18,7 +18,7 @@ def bench(
     ppc: Annotated[int, typer.Option("--ppc", min=0, help="Particles a cell; 0: 8 in three dimensions, 4 in two.")] = 0,
     dim: Annotated[int, typer.Option("--dim", min=2, max=3, help="Dimensions.")] = 3,
     dtype: Annotated[Literal["f32", "f64"], typer.Option("--dtype", help="Precision.")] = "f32",
-    threads: Annotated[int, typer.Option("--threads", min=1, help="Threads of the run; more than one is not built.")] = 1,
+    threads: Threads = 1,
     warm: Annotated[int, typer.Option("--warm", min=1, help="Untimed steps.")] = 10,
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of a timed block.")] = 10,
     reps: Annotated[int, typer.Option("--reps", min=1, help="Timed blocks.")] = 9,
@@ -31,25 +31,25 @@ def bench(
     Without CONFIG, one JSON line with the fields of other codes' programs. Compare whole runs in turn, pinned to one core of an idle machine, three rounds
     or more, by ratios of medians, and only where `check` agrees.
     """
-    if threads > 1:
-        warn("a run uses one thread: run points side by side with `mpm sweep -j`")
-        raise typer.Exit(2)
     if config is None:
+        from mpm.integrate.order import SHARED
         from mpm.study.bench import BenchError, Options, bench
 
         try:
-            found = bench(Options(n, particles, ppc, dim, dtype, warm, steps, reps, order))
+            found = bench(Options(n, particles, ppc, dim, dtype, warm, steps, reps, order, threads))
         except BenchError as error:
             warn(str(error))
             raise typer.Exit(2) from None
         from importlib.metadata import version
 
-        given = {"peer": "mpm", "version": version("mpm"), "dim": dim, "n": n, "ppc": ppc or {2: 4, 3: 8}[dim], "dtype": dtype, "threads": 1, "order": order}
+        given = {"peer": "mpm", "version": version("mpm"), "dim": dim, "n": n, "ppc": ppc or {2: 4, 3: 8}[dim], "dtype": dtype, "order": order}
+        if found["threads"] < threads:
+            warn(f"one thread did all: more help from {SHARED} particles on")
         print(json.dumps(given | found), flush=True)
         return
     from mpm.study.phases import phases, table
 
-    found = phases(load(config, set_))
+    found = phases(load(config, set_), threads)
     if as_json:
         document(found)
     else:

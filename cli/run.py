@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import typer
-from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, load
+from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, Threads, load
 from mpm_cli.progress import Single
 from mpm_cli.talk import document, say
 
@@ -15,6 +15,7 @@ def run(
     checkpoint: Checkpoints = None,
     smoke: Smoke = False,
     max_runs: MaxRuns = 10_000,
+    threads: Threads = 1,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -33,7 +34,7 @@ def run(
     progress = Single(as_json, quiet)
     try:
         with signals(progress.signal):
-            data, record, keeper = run_one(experiment, progress.beat, max_runs, folder / "run.checkpoint", checkpoint or EVERY, progress.note)
+            data, record, keeper = run_one(experiment, progress.beat, max_runs, folder / "run.checkpoint", checkpoint or EVERY, progress.note, threads)
     finally:
         progress.close()
     folder.mkdir(parents=True, exist_ok=True)

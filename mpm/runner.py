@@ -1,6 +1,6 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
-run_point(experiment, beat, compare, keeper) -> Run      run_points(experiments) -> list of Runs, for material points
+run_point(experiment, beat, compare, keeper, threads) -> Run      run_points(experiments) -> list of Runs, for material points
 warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
@@ -11,32 +11,34 @@ import itertools
 import numpy as np
 
 from mpm.costs import estimate
+from mpm.integrate.order import SHARED
 from mpm.memory import Turn
 from mpm.scene.inventory import physics
 from mpm.state import Run
 
 
-def run_point(experiment, beat=None, compare: bool = True, keeper=None) -> Run:
+def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
     """Run one point (no sweep). A failure of the model is the Run's outcome; SceneError says that no method here can run the config.
 
     compare    False leaves out the errors against the exact solution, which cost time that a run does not need; what starts from it still does
     keeper     what the run remembers (mpm.memory), to go on where it was cut; None where nobody keeps it
+    threads    that share the work of one large run (mpm.integrate.slabs); the result is the same for any number
     """
     if getattr(experiment.model, "kind", "full") == "auto":
         from mpm.reduce.choose import smallest
 
         turns = itertools.count()
-        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, keeper and Turn(keeper, next(turns))))
+        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, keeper and Turn(keeper, next(turns)), threads))
         run.finals |= misfits(experiment, run)
         return run
-    return run_named(experiment, beat, compare, keeper)
+    return run_named(experiment, beat, compare, keeper, threads)
 
 
-def run_named(experiment, beat=None, compare: bool = True, keeper=None) -> Run:
+def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
     """Run the model that the config names."""
     from mpm.verification import exact_solution
 
-    exact = exact_solution(experiment)
+    exact, shared = exact_solution(experiment), False
     if experiment.grid.dimension == 0:
         from mpm.scene.point import run_zero
 
@@ -48,11 +50,18 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None) -> Run:
 
         scene = build(experiment, exact)
         scene.watch.exact = scene.watch.exact if compare else None
+        scene.threads = threads
         run = physical(simulate(scene, beat, keeper), experiment)
+        shared = scene.order.shared
     else:
         from mpm.scene.rigid import run_rigid
 
         run = run_rigid(experiment, exact, beat, compare, keeper)
+    if threads > 1:
+        run.facts["threads"] = threads if shared else 1
+        if not shared:
+            said = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
+            run.facts["warnings"] = [*run.facts.get("warnings", ()), said]
     return told(experiment, run)
 
 

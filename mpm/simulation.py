@@ -22,6 +22,7 @@ from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.order import Order
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
+from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.memory import arrays, fill
@@ -31,6 +32,7 @@ from mpm.state import Run, Thermal
 from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
+BLOCK_SLABS = 16  # steps of a scene in slabs: every block begins with a scatter of its own
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
@@ -69,6 +71,7 @@ class Scene:
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
+    threads: int = 1  # that share the work of a large scene
     order: Order = field(init=False)  # of the particles, while it runs
 
     def __post_init__(self):
@@ -249,14 +252,17 @@ def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) ->
     nodes, force, boxes, _ = buffers
     scene.order.refresh()
     clock.reset()
-    advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, steps, clock.reports)
-    scene.order.passed(math.sqrt(max(clock.reports[:, SPEED])) * dt * steps, steps)
+    astray = False
+    if scene.order.sliced:
+        astray = advance_slabs(scene, nodes, force, boxes, float(dt), steps, clock.reports)
+    else:
+        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, steps, clock.reports)
+    scene.order.passed(math.sqrt(max(clock.reports[:, SPEED])) * dt * steps, steps, astray)
 
 
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     particles = sum(len(body.particles.m) for body in scene.bodies)
-    most = max(1, min(BLOCK, BLOCK_WORK // particles))
     while until - clock.time > 1e-12 * until:
         sound = guards.block(scene, clock)
         if not sound.ok:
@@ -268,7 +274,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
             return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
         left = until - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
-        dt, block = left / count, min(most, count)
+        dt, block = left / count, min(BLOCK_SLABS if scene.order.sliced else max(1, min(BLOCK, BLOCK_WORK // particles)), count)
         binding = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
         if count == 1 and left < step * (1 - 1e-9):
             binding = "heat pace or output"

@@ -10,6 +10,7 @@ Fails when: a body at a contact wall is sampled by fewer than two particles a ce
 
 from mpm.boundary import CONTACT, STICK
 from mpm.jit import kernel
+from mpm.lanes import poke
 from mpm.state import PAD
 
 
@@ -102,9 +103,8 @@ def clear(nodes, shape, box):
     for i in range(box[0, 0], box[0, 1]):
         for j in range(box[1, 0], box[1, 1]):
             row = (i * shape[1] + j) * shape[2]
-            for n in range(row + box[2, 0], row + box[2, 1]):
-                for c in range(nodes.shape[1]):
-                    nodes[n, c] = 0.0
+            for k in range((row + box[2, 0]) * nodes.shape[1], (row + box[2, 1]) * nodes.shape[1]):
+                poke(nodes, k, 0.0)
     empty(shape, box)
 
 

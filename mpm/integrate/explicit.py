@@ -20,7 +20,7 @@ from mpm.integrate.respond import respond
 from mpm.integrate.sharpen import sharpen
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
 from mpm.jit import kernel
-from mpm.lanes import EIGHT, below, fma, least, load8, maximum, most, poke, splat8, store
+from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE
 from mpm.state import PAD
 from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick_up, spread, uses_basis_gradient, wants_change
@@ -41,16 +41,22 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
-            sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
-            average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
-            compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
+            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, now, walls, gravity, dt, reports)
         if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports):
             return
         if not opening:
             if wants_change(scheme):
                 clear(force[now], shape, boxes[now].copy())
             clear(nodes[now], shape, boxes[now])
+
+
+@kernel
+def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, now, walls, gravity, dt, reports):
+    """What is done to the nodes of buffer `now` between scatter and gather."""
+    update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
+    sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
+    average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
+    compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
 
 
 @kernel
@@ -70,24 +76,32 @@ def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes
 def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, opening, last, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
-    past = 0.0 if opening else dt
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        if opening:
-            fetch(body.particles, first, chunk, count)
-        else:
-            collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
-            carry(scheme, body.particles, first, chunk, count, change, last)
-            relax(body.locking, space, x, first, chunk, count, dt)
-            move(space, x, chunk, first, count, dt, report)
-        if report[CODE] == 0.0:
-            respond(space, gradient, body, chunk, first, count, past, dt, report)
-        if report[CODE] != 0.0:
-            report[STEP] = max(step, 0)
+        if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
             return False
-        act(body.source, body, chunk, first, count, past, dt, report)
         if not last:
             spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)
+    return True
+
+
+@kernel(inline=True)
+def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
+    """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
+    x, past = body.particles.x, 0.0 if opening else dt
+    if opening:
+        fetch(body.particles, first, chunk, count)
+    else:
+        collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
+        carry(scheme, body.particles, first, chunk, count, change, last)
+        relax(body.locking, space, x, first, chunk, count, dt)
+        move(space, x, chunk, first, count, dt, report)
+    if report[CODE] == 0.0:
+        respond(space, gradient, body, chunk, first, count, past, dt, report)
+    if report[CODE] != 0.0:
+        report[STEP] = max(step, 0)
+        return False
+    act(body.source, body, chunk, first, count, past, dt, report)
     return True
 
 
@@ -100,19 +114,22 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
     if wants_change(scheme):
         fold(force, D, shape, folded, walls)
     fold(nodes, D, shape, box, walls)
-    for i in range(box[0, 0], box[0, 1]):
-        for j in range(box[1, 0], box[1, 1]):
-            row = (i * shape[1] + j) * shape[2]
-            for n in range(row + box[2, 0], row + box[2, 1]):
-                m = nodes[n, D]
-                inverse = 1.0 / m if m > 0.0 else 0.0
-                for c in range(D):
-                    push = dt * gravity[c] if m > 0.0 else 0.0
-                    if wants_change(scheme):
-                        nodes[n, c] *= inverse
-                        force[n, c] = force[n, c] * inverse + push
-                    else:
-                        nodes[n, c] = nodes[n, c] * inverse + push
+    if D > 1 and not wants_change(scheme):
+        to_velocity(nodes, D, shape, box, gravity, dt)
+    else:
+        for i in range(box[0, 0], box[0, 1]):
+            for j in range(box[1, 0], box[1, 1]):
+                row = (i * shape[1] + j) * shape[2]
+                for n in range(row + box[2, 0], row + box[2, 1]):
+                    m = nodes[n, D]
+                    inverse = 1.0 / m if m > 0.0 else 0.0
+                    for c in range(D):
+                        push = dt * gravity[c] if m > 0.0 else 0.0
+                        if wants_change(scheme):
+                            nodes[n, c] *= inverse
+                            force[n, c] = force[n, c] * inverse + push
+                        else:
+                            nodes[n, c] = nodes[n, c] * inverse + push
     impose(nodes, D, shape, box, walls)
     if wants_change(scheme):
         for i in range(box[0, 0], box[0, 1]):
@@ -132,6 +149,26 @@ def update(space, scheme, nodes, force, box, walls, gravity, dt):
                         force[n, c] = nodes[n, c] - force[n, c]
         unfold(force, D, shape, box, walls)
     unfold(nodes, D, shape, box, walls)
+
+
+@kernel(inline=True)
+def to_velocity(nodes, D, shape, box, gravity, dt):
+    """[p m] becomes [p/m + dt g, m], a node at once; a node without mass stays nothing."""
+    real = nodes.dtype.type
+    nought, one = real(0), real(1)
+    if D == 2:
+        moves, keeps = four(one, one, nought, nought), four(nought, nought, one, nought)
+        push = four(real(dt * gravity[0]), real(dt * gravity[1]), nought, nought)
+    else:
+        moves, keeps = four(one, one, one, nought), four(nought, nought, nought, one)
+        push = four(real(dt * gravity[0]), real(dt * gravity[1]), real(dt * gravity[D - 1]), nought)
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                m = peek(nodes, 4 * n + D)
+                if m > nought:
+                    store(nodes, 4 * n, fma(load4(nodes, 4 * n), fma(splat4(one / m), moves, keeps), push))
 
 
 @kernel(inline=True)

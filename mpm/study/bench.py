@@ -32,6 +32,7 @@ class Options:
     steps: int = 10
     reps: int = 9
     order: str = "lattice"
+    threads: int = 1
 
 
 class BenchError(ValueError):
@@ -88,6 +89,7 @@ def bench(options: Options) -> dict:
     from mpm.simulation import Clock, advance_block, work_arrays
 
     scene, h = cube(options), 1.0 / options.n
+    scene.threads = options.threads
     clock, buffers = Clock(scene), work_arrays(scene)
     dt = 0.2 * h / np.sqrt((LAM + 2 * MU) / DENSITY)
 
@@ -105,7 +107,8 @@ def bench(options: Options) -> dict:
         began = time.perf_counter()
         run(options.steps)
         blocks.append((time.perf_counter() - began) / options.steps)
-    return {"first_s": round(first, 3)} | told(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
+    about = {"first_s": round(first, 3), "threads": options.threads if scene.order.shared else 1}
+    return about | told(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
 
 
 def told(options: Options, particles, blocks: np.ndarray, shift: float) -> dict:

@@ -107,8 +107,9 @@ def spreads(scheme, space, gradient, body, chunk, nodes, force, box, times):
 class Bench:
     """A scene that can be stepped and taken apart."""
 
-    def __init__(self, experiment):
+    def __init__(self, experiment, threads: int = 1):
         self.scene = build(experiment)
+        self.scene.threads = threads
         self.clock, self.buffers = Clock(self.scene), work_arrays(self.scene)
         self.now = limits(self.scene.space, directions(self.scene.space), self.scene.bodies, self.clock.reports)
         self.dt = (self.scene.step or self.now.step() * self.scene.safety) / 4
@@ -168,19 +169,20 @@ def without(experiment, sections: tuple[str, ...]) -> Any:
         return None
 
 
-def phases(experiment) -> dict:
-    """Figures of one point of a config that moves."""
+def phases(experiment, threads: int = 1) -> dict:
+    """Figures of one point of a config that moves; whole steps by so many threads where it is large enough, phases by one."""
     experiment = plan(experiment).cases[0].experiment
     if experiment.grid.dimension == 0 or not experiment.moving:
         return rigid(experiment)
-    whole = Bench(experiment)
+    whole = Bench(experiment, threads)
     found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "peaks": peaks(), "without_ns": {}}
     if whole.now.heat:
         found["heat_step_ns"] = 1e9 * seconds(whole.heat) / whole.particles
     for name, sections in WITHOUT.items():
         less = without(experiment, sections)
         if less is not None and less.moving:
-            found["without_ns"][name] = Bench(less).step_ns()
+            found["without_ns"][name] = Bench(less, threads).step_ns()
+    found["threads"] = threads if whole.scene.order.shared else 1
     state = sum(array.nbytes for body in whole.scene.bodies for array in body.particles)
     found["state_bytes"] = state / whole.particles
     found["bandwidth_share"] = 2 * found["state_bytes"] / found["step_ns"] / found["peaks"]["gbytes"]
@@ -196,7 +198,8 @@ def table(found: dict) -> str:
     """The figures in words."""
     if "point_s" in found:
         return f"{1e3 * found['point_s']:.3g} ms a point (no particles)"
-    lines = [f"{found['particles']} particles, {found['step_ns']:.1f} ns a particle-step, {found['state_bytes']:.0f} B of state a particle"]
+    by = f", {found['threads']} threads" if found["threads"] > 1 else ""
+    lines = [f"{found['particles']} particles{by}, {found['step_ns']:.1f} ns a particle-step, {found['state_bytes']:.0f} B of state a particle"]
     lines += [f"  {name:8} {value:7.1f} ns" for name, value in found["phases_ns"].items()]
     if "heat_step_ns" in found:
         lines.append(f"  heat     {found['heat_step_ns']:7.1f} ns a particle and heat step, at its own pace")

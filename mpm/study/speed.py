@@ -32,8 +32,8 @@ DIGITS = {"f32": 3e-5, "f64": 3e-7}
 INDEPENDENT = "--n 64 --np 100000 --dtype f64 --reps 30"
 
 
-def pinned(core: int, command: list[str]) -> list[str]:
-    """The command on one core."""
+def pinned(core: int | str, command: list[str]) -> list[str]:
+    """The command on one core, or on "0,1"."""
     return ["taskset", "-c", str(core), *command]
 
 
@@ -41,7 +41,7 @@ def ours(options: str) -> list[str]:
     return [sys.executable, "-c", "import sys; from mpm_cli.main import main; sys.exit(main(sys.argv[1:]))", "bench", *options.split()]
 
 
-def line(command: list[str], core: int = 0) -> dict:
+def line(command: list[str], core: int | str = 0) -> dict:
     """The JSON line of a program."""
     environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
     done = subprocess.run(pinned(core, command), capture_output=True, text=True, check=False, env=environment)
@@ -87,6 +87,20 @@ def shuffled() -> str:
     return f"particles in random order, sorting counted, 100 steps: {ratio:.2f} of the time on a lattice"
 
 
+def threads() -> str:
+    """Two threads on one run of 512 000 particles against one, which does the same in the same order."""
+    said = []
+    for dtype, name in (("f32", "float32"), ("f64", "float64")):
+        found: dict[int, list[dict]] = {1: [], 2: []}
+        for _ in range(3):
+            for count, lines in found.items():
+                lines.append(line(ours(f"--n 128 --np 512000 --dtype {dtype} --steps 16 --reps 3 --threads {count}"), "0,1"))
+        one, two = (statistics.median(each["med_ms"] for each in lines) for lines in found.values())
+        same = all(each["check"] == found[1][0]["check"] for each in found[2])
+        said.append(f"{one / two:.2f} x one ({name}, check {'the same' if same else 'DIFFERENT'})")
+    return "two threads on 512 000 particles: " + ", ".join(said)
+
+
 def two_runs() -> str:
     """Two independent runs on two cores against one."""
     alone = line(ours(INDEPENDENT))["Mpps_med"]
@@ -113,12 +127,15 @@ def grown() -> str:
     return "ns a particle-step, float64, at 1e4, 1e5, 1e6 particles: " + ", ".join(f"{1e6 * one['med_ms'] / one['N']:.1f}" for one in found)
 
 
+FIGURES = {"random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Speed beside other codes, as a table in Markdown.")
     parser.add_argument("--peers", type=Path)
     parser.add_argument("--python")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--only", default="", help="rows whose name holds this")
+    parser.add_argument("--only", default="", help="rows whose name holds this; figures too: " + ", ".join(FIGURES))
     given = parser.parse_args()
     about = machine()
     print(
@@ -131,8 +148,9 @@ def main() -> None:
     for row in rows(given.peers, given.python, given.rounds, given.only):
         print(row, flush=True)
     print()
-    for figure in (shuffled, two_runs, start_up, grown):
-        print(f"- {figure()}", flush=True)
+    for name, figure in FIGURES.items():
+        if given.only in name:
+            print(f"- {figure()}", flush=True)
 
 
 if __name__ == "__main__":

@@ -168,10 +168,12 @@ def run_one(
     checkpoint: Path | None = None,
     every: float = EVERY,
     note: Callable[[str], None] | None = None,
+    threads: int = 1,
 ) -> tuple[bytes, Any, Any]:
     """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions), its record, and its keeper.
 
     checkpoint, every, note    where and how often [s] the run keeps how far it is, and who hears of trouble with that (records.checkpoint); None: nowhere
+    threads                    that share one large run
     """
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
@@ -179,7 +181,7 @@ def run_one(
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
     keeper = Checkpoint(checkpoint, case.run_id, every, note) if checkpoint is not None else None
-    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, config=case.experiment.resolved())
+    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, threads, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     about = {
         "title": experiment.title,
@@ -189,6 +191,7 @@ def run_one(
         "swept": [],
         "resolved": case.experiment.resolved(),
         "versions": versions(),
+        "threads": record.facts.get("threads", 1),
     }
     return dataset(alone, about, {alone.cases[0].run_id: record}), record, keeper
 
@@ -201,9 +204,9 @@ def tree_of(source: Any) -> Any:
         return tree.load()
 
 
-def run(experiment: Any, beat: Callable[[float, float], bool] | None = None) -> Any:
+def run(experiment: Any, beat: Callable[[float, float], bool] | None = None, threads: int = 1) -> Any:
     """`mpm.run`: the first point as an xarray.DataTree (/, series, grid, particles). A point that fails is `status` 4 with its `error`, not an exception."""
-    return tree_of(run_one(experiment, beat)[0])
+    return tree_of(run_one(experiment, beat, threads=threads)[0])
 
 
 def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "auto", max_runs: int = 10_000, reporter: Any = None, **more: Any) -> Any:

@@ -87,7 +87,7 @@ def attributes(about: dict, laid: Table) -> dict[str, Any]:
         "source_hash": sources[0] if len(sources) == 1 else sources,
         "git_revision": git_revision(),
         "machine": machine(),
-        "threads": 1,
+        "threads": about.get("threads", 1),
         "points": len(laid.plan.cases),
         "started": laid.started,
         "finished": laid.finished,

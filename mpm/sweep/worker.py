@@ -92,7 +92,7 @@ def together(task: Task, runner: str) -> list[Any] | None:
 
 
 def compute(
-    run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, keeper: Any = None, **calls: Any
+    run_id: str, experiment: Callable[[], Any], runner: str, beat: Callable[[float, float], bool] | None, keeper: Any = None, threads: int = 1, **calls: Any
 ) -> Any:
     """The record of a point. Whatever the model raises is this point's failure, not the sweep's: status `failed`, with the place but no values."""
     from mpm.records import point, variables
@@ -101,7 +101,8 @@ def compute(
     calls |= {"source": source_hash(), "started": now()}
     began = time.perf_counter()
     try:
-        return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat, keeper=keeper), **calls, finished=now())
+        more = {"threads": threads} if threads > 1 else {}
+        return point.from_run(run_id, importlib.import_module(runner).run_point(experiment(), beat, keeper=keeper, **more), **calls, finished=now())
     except MemoryError:
         text = f"{variables.STATUS[variables.KILLED]}: wants more memory than is allowed or free"
         return point.Record(run_id, variables.KILLED, text, variables.MEMORY, wall_time=time.perf_counter() - began, finished=now(), **calls)

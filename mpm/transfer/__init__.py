@@ -24,6 +24,7 @@ from mpm.transfer.roles import (
     carry,
     collect,
     columns,
+    deliver,
     fetch,
     gather,
     gather_scalar,
@@ -40,6 +41,6 @@ from mpm.transfer.square import scatter_square
 from mpm.transfer.xpic import Xpic
 
 __all__ = [
-    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "fetch", "gather", "gather_scalar", "lay_down", "line",
-    "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
+    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "deliver", "fetch", "gather", "gather_scalar", "lay_down",
+    "line", "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
 ]  # fmt: skip

@@ -41,15 +41,16 @@ def test_moving_bodies(core, transfer):
     assert cuts == 6 and not wrong
 
 
-def test_bodies_whose_particles_are_sorted(core, monkeypatch):
+@pytest.mark.parametrize("shared", [10**9, 1], ids=["alone", "in slabs"])
+def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
     from mpm.integrate import order
 
-    for name, value in {"LEAST": 1, "MIXED": 0.0, "FAR": 0, "EVERY": 2}.items():
+    for name, value in {"LEAST": 1, "MIXED": 0.0, "FAR": 0, "EVERY": 2, "SHARED": shared, "FULL": 1}.items():
         monkeypatch.setattr(order, name, value)
     air = [{"of": "body", "convection": {"beta": 1.0, "outside": 300}}]
     body = core.config(2)["bodies"]["body"] | {"velocity": [0.9, 0.3]}
     looks = LOOKS | {"probes": {"p": [0.7, 0.7]}}
-    experiment = core.experiment(2, {"method.particles": 3}, surfaces=air, bodies={"body": body}, output=looks, time={"end": 1.0})
+    experiment = core.experiment(2, {"method.particles": 2, "grid.cell": 0.0625}, surfaces=air, bodies={"body": body}, output=looks, time={"end": 1.0})
     cuts, wrong = cut(experiment, 6, np.random.default_rng(5))
     assert cuts == 6 and not wrong
 
