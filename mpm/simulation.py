@@ -25,6 +25,7 @@ from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
+from mpm.lanes import aligned
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
@@ -165,8 +166,8 @@ def work_arrays(scene: Scene):
     """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, scalars where there is heat."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
     dtype = scene.bodies[0].particles.x.dtype
-    nodes = np.zeros((2, n, columns(D)), dtype)
-    force = np.zeros((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
+    nodes = aligned((2, n, columns(D)), dtype)
+    force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
     rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else IMPLICIT_ROWS
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))

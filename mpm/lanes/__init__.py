@@ -5,6 +5,7 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
 
     load4(array, at), load8(array, at)     four or eight numbers from a C-contiguous array, `at` counts its numbers
     store(array, at, a)                    the same, back
+    aligned(shape, dtype)                  zeros at the start of a cache line; in Python only
     peek(array, at), poke(array, at, x)    one number: unlike array[i, k] never a negative index, which costs a comparison each where LLVM cannot see the sign
     splat4(x), splat8(x)                   x in every lane
     four(a, b, c, d)                       lanes from numbers
@@ -27,7 +28,7 @@ In plain Python (NUMBA_DISABLE_JIT) lanes are small numpy arrays and every funct
 To add    a Python function, its type, its LLVM instruction: see `operation` in kinds.py.
 """
 
-from mpm.lanes.access import four, high, item, join, load4, load8, low, peek, poke, put, splat4, splat8, store, transposed
+from mpm.lanes.access import aligned, four, high, item, join, load4, load8, low, peek, poke, put, splat4, splat8, store, transposed
 from mpm.lanes.arithmetic import absolute, floor, fma, like, sqrt
 from mpm.lanes.functions import expm1, exponential, log1p
 from mpm.lanes.order import below, choose, least, maximum, minimum, most, precision
@@ -35,34 +36,6 @@ from mpm.lanes.order import below, choose, least, maximum, minimum, most, precis
 EIGHT = 8  # particles that pass at once
 
 __all__ = [
-    "EIGHT",
-    "absolute",
-    "below",
-    "choose",
-    "expm1",
-    "exponential",
-    "floor",
-    "fma",
-    "four",
-    "high",
-    "item",
-    "join",
-    "least",
-    "like",
-    "load4",
-    "load8",
-    "log1p",
-    "low",
-    "maximum",
-    "minimum",
-    "most",
-    "peek",
-    "poke",
-    "precision",
-    "put",
-    "splat4",
-    "splat8",
-    "sqrt",
-    "store",
-    "transposed",
+    "EIGHT", "absolute", "aligned", "below", "choose", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like", "load4",
+    "load8", "log1p", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8", "sqrt", "store", "transposed",
 ]  # fmt: skip

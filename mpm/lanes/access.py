@@ -7,6 +7,14 @@ from numba import types
 from mpm.lanes.kinds import LanesType, halved, holds, operation, place, places, pointer, real, same
 
 
+def aligned(shape, dtype):
+    """Zeros whose first number begins a cache line (64 bytes): lanes then cross as few lines as can be."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    raw = np.zeros(size + 64, np.uint8)
+    start = -raw.ctypes.data % 64
+    return raw[start : start + size].view(dtype).reshape(shape)
+
+
 def load4(array, at):
     return array.reshape(-1)[at : at + 4].copy()
 

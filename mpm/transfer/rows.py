@@ -1,13 +1,15 @@
 """Scatter and gather of quadratic B-splines in planes and volumes, a stencil row at once.
 
 A node is four numbers [px py pz m], so the three nodes of a row are twelve in a row: lanes of eight (two nodes) and of four (the third). What a particle
-puts on a row is w (c + i X + j Y) times fixed lanes, two multiply-adds a row; gather is its transpose, summed row by row, plane by plane, then in the row.
+puts on a row is v_j (u_i (c + i X) + j u_i Y) times fixed lanes; gather is its transpose, summed row by row, plane by plane, then in the row.
+The rows of a stencil stay in registers while consecutive particles share them.
 """
 
 from mpm.jit import kernel
-from mpm.lanes import EIGHT, fma, four, high, item, join, load4, load8, low, splat4, splat8, store
+from mpm.lanes import fma, high, join, load4, load8, low, splat4, splat8, store
+from mpm.transfer.packing import pack_plane, pack_volume, unpack_plane, unpack_volume
 from mpm.transfer.roles import lay_down, uses_basis_gradient
-from mpm.transfer.stencils import FIRST, OFFSET, B, G, W, stencil_chunk
+from mpm.transfer.stencils import FIRST, B, G, W, stencil_chunk
 
 
 @kernel(inline=True)
@@ -18,9 +20,129 @@ def place_chunk(space, x, first, chunk, count, box):
 
 
 @kernel(inline=True)
+def zeros(nodes):
+    """Three rows of a plane of the stencil: lanes of eight and of four each."""
+    nought8, nought4 = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0))
+    return nought8, nought4, nought8, nought4, nought8, nought4
+
+
+@kernel(inline=True)
+def added(rows, s, p, j, first, eight, rest, Y8, Y4):
+    """Rows += weight times (row + j Y); the weights stand from row `first` of the stencils, in direction j."""
+    a8, a4, b8, b4, c8, c4 = rows
+    w, x, y = s[j, first, p], s[j, first + 1, p], s[j, first + 2, p]
+    second8, second4 = eight + Y8, rest + Y4
+    return (
+        fma(splat8(w), eight, a8), fma(splat4(w), rest, a4), fma(splat8(x), second8, b8), fma(splat4(x), second4, b4),
+        fma(splat8(y), second8 + Y8, c8), fma(splat4(y), second4 + Y4, c4),
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def flush(nodes, at, step, rows):
+    """Nodes += three rows, `step` apart."""
+    a8, a4, b8, b4, c8, c4 = rows
+    store(nodes, at, load8(nodes, at) + a8)
+    store(nodes, at + 8, load4(nodes, at + 8) + a4)
+    at += step
+    store(nodes, at, load8(nodes, at) + b8)
+    store(nodes, at + 8, load4(nodes, at + 8) + b4)
+    at += step
+    store(nodes, at, load8(nodes, at) + c8)
+    store(nodes, at + 8, load4(nodes, at + 8) + c4)
+
+
+@kernel(inline=True)
 def in_row(a, weights8, weights4):
     """The same four lanes on the three nodes of a row, weighted: (eight, four)."""
     return join(a, a) * weights8, a * weights4
+
+
+@kernel(inline=True)
+def row_of(a, step, weights8, weights4):
+    """a, a + step and a + 2 step on the three nodes of a row, weighted: (eight, four)."""
+    second = a + step
+    return join(a, second) * weights8, (second + step) * weights4
+
+
+@kernel(inline=True)
+def weights(s, d, first, p):
+    """Three weights of direction d along a row."""
+    return join(splat4(s[d, first, p]), splat4(s[d, first + 1, p])), splat4(s[d, first + 2, p])
+
+
+@kernel(inline=True)
+def scatter_plane(space, gradient, chunk, count, nodes):
+    """The particles of a chunk on to the nodes (n, 4) of a plane."""
+    pack_plane(space, gradient, chunk, count)
+    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
+    nought8, nought4, step = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0)), 4 * space.n1
+    rows, last = zeros(nodes), -1
+    for p in range(count):
+        at = 4 * (int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p]))
+        if at != last:
+            if last >= 0:
+                flush(nodes, last, step, rows)
+            rows, last = zeros(nodes), at
+        mine = p * wide
+        w8, w4 = weights(s, 1, W, p)
+        eight, rest = row_of(load4(packed, mine), load4(packed, mine + 8), w8, w4)
+        X8, X4 = in_row(load4(packed, mine + 4), w8, w4)
+        if uses_basis_gradient(gradient):
+            g8, g4 = weights(s, 1, G, p)
+            gy8, gy4 = in_row(load4(packed, mine + 16), g8, g4)
+            gx8, gx4 = in_row(load4(packed, mine + 12), w8, w4)
+            eight, rest = eight + gy8, rest + gy4
+            rows = added(rows, s, p, 0, G, gx8, gx4, nought8, nought4)
+        rows = added(rows, s, p, 0, W, eight, rest, X8, X4)
+    flush(nodes, last, step, rows)
+
+
+@kernel(inline=True)
+def scatter_volume(space, gradient, chunk, count, nodes):
+    """The particles of a chunk on to the nodes (n, 4) of a volume."""
+    pack_volume(space, gradient, chunk, count)
+    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
+    nought8, nought4 = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0))
+    step, plane = 4 * space.n2, 4 * space.n1 * space.n2
+    front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), -1
+    for p in range(count):
+        at = 4 * ((int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p])) * space.n2 + int(s[2, FIRST, p]))
+        if at != last:
+            if last >= 0:
+                flush(nodes, last, step, front)
+                flush(nodes, last + plane, step, middle)
+                flush(nodes, last + 2 * plane, step, back)
+            front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), at
+        mine = p * wide
+        w8, w4 = weights(s, 2, W, p)
+        eight, rest = row_of(load4(packed, mine), load4(packed, mine + 12), w8, w4)
+        X8, X4 = in_row(load4(packed, mine + 4), w8, w4)
+        Y8, Y4 = in_row(load4(packed, mine + 8), w8, w4)
+        if uses_basis_gradient(gradient):
+            g8, g4 = weights(s, 2, G, p)
+            gz8, gz4 = in_row(load4(packed, mine + 24), g8, g4)
+            gx8, gx4 = in_row(load4(packed, mine + 16), w8, w4)
+            gy8, gy4 = in_row(load4(packed, mine + 20), w8, w4)
+            eight, rest = eight + gz8, rest + gz4
+            u8, u4, v8, v4 = splat8(s[0, G, p]), splat4(s[0, G, p]), splat8(s[0, W, p]), splat4(s[0, W, p])
+            front = added(front, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
+            front = added(front, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
+            u8, u4, v8, v4 = splat8(s[0, G + 1, p]), splat4(s[0, G + 1, p]), splat8(s[0, W + 1, p]), splat4(s[0, W + 1, p])
+            middle = added(middle, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
+            middle = added(middle, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
+            u8, u4, v8, v4 = splat8(s[0, G + 2, p]), splat4(s[0, G + 2, p]), splat8(s[0, W + 2, p]), splat4(s[0, W + 2, p])
+            back = added(back, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
+            back = added(back, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
+        u8, u4 = splat8(s[0, W, p]), splat4(s[0, W, p])
+        front = added(front, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
+        eight, rest, u8, u4 = eight + X8, rest + X4, splat8(s[0, W + 1, p]), splat4(s[0, W + 1, p])
+        middle = added(middle, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
+        eight, rest, u8, u4 = eight + X8, rest + X4, splat8(s[0, W + 2, p]), splat4(s[0, W + 2, p])
+        back = added(back, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
+    flush(nodes, last, step, front)
+    flush(nodes, last + plane, step, middle)
+    flush(nodes, last + 2 * plane, step, back)
 
 
 @kernel(inline=True)
@@ -30,102 +152,9 @@ def along(eight, rest, w0, w1, w2):
 
 
 @kernel(inline=True)
-def add(nodes, at, w8, w4, eight, rest):
-    """One row of nodes += w times what a particle puts there."""
-    store(nodes, at, fma(w8, eight, load8(nodes, at)))
-    store(nodes, at + 8, fma(w4, rest, load4(nodes, at + 8)))
-
-
-@kernel(inline=True)
-def scatter_plane(space, gradient, chunk, count, nodes):
-    """The particles of a chunk on to the nodes (n, 4) of a plane."""
-    s, a, A, T, m = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m
-    nought, h = nodes.dtype.type(0), nodes.dtype.type(space.h)
-    h4 = splat4(h)
-    for p in range(count):
-        X, Y = four(A[0, 0, p], A[1, 0, p], nought, nought), four(A[0, 1, p], A[1, 1, p], nought, nought)
-        corner = four(a[0, p], a[1, p], m[p], nought)
-        corner = fma(splat4(s[0, OFFSET, p]), X, fma(splat4(s[1, OFFSET, p]), Y, corner))
-        X, Y = h4 * X, h4 * Y
-        w8, w4 = join(splat4(s[1, W, p]), splat4(s[1, W + 1, p])), splat4(s[1, W + 2, p])
-        second = corner + Y
-        eight, rest = join(corner, second) * w8, (second + Y) * w4
-        X8, X4 = in_row(X, w8, w4)
-        if uses_basis_gradient(gradient):
-            g = four(T[0, 1, p], T[1, 1, p], nought, nought)
-            gy8, gy4 = in_row(g, join(splat4(s[1, G, p]), splat4(s[1, G + 1, p])), splat4(s[1, G + 2, p]))
-            gx8, gx4 = in_row(four(T[0, 0, p], T[1, 0, p], nought, nought), w8, w4)
-            eight, rest = eight + gy8, rest + gy4
-        at = 4 * (int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p]))
-        for i in range(3):
-            if uses_basis_gradient(gradient):
-                add(nodes, at, splat8(s[0, G + i, p]), splat4(s[0, G + i, p]), gx8, gx4)
-            add(nodes, at, splat8(s[0, W + i, p]), splat4(s[0, W + i, p]), eight, rest)
-            eight, rest = eight + X8, rest + X4
-            at += 4 * space.n1
-
-
-@kernel(inline=True)
-def scatter_volume(space, gradient, chunk, count, nodes):
-    """The particles of a chunk on to the nodes (n, 4) of a volume."""
-    s, a, A, T, m = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m
-    nought, h = nodes.dtype.type(0), nodes.dtype.type(space.h)
-    h4 = splat4(h)
-    for p in range(count):
-        X = four(A[0, 0, p], A[1, 0, p], A[2, 0, p], nought)
-        Y = four(A[0, 1, p], A[1, 1, p], A[2, 1, p], nought)
-        Z = four(A[0, 2, p], A[1, 2, p], A[2, 2, p], nought)
-        corner = fma(splat4(s[2, OFFSET, p]), Z, four(a[0, p], a[1, p], a[2, p], m[p]))
-        corner = fma(splat4(s[0, OFFSET, p]), X, fma(splat4(s[1, OFFSET, p]), Y, corner))
-        X, Y, Z = h4 * X, h4 * Y, h4 * Z
-        w8, w4 = join(splat4(s[2, W, p]), splat4(s[2, W + 1, p])), splat4(s[2, W + 2, p])
-        second = corner + Z
-        eight, rest = join(corner, second) * w8, (second + Z) * w4
-        X8, X4 = in_row(X, w8, w4)
-        Y8, Y4 = in_row(Y, w8, w4)
-        if uses_basis_gradient(gradient):
-            g = four(T[0, 2, p], T[1, 2, p], T[2, 2, p], nought)
-            gz8, gz4 = in_row(g, join(splat4(s[2, G, p]), splat4(s[2, G + 1, p])), splat4(s[2, G + 2, p]))
-            gy8, gy4 = in_row(four(T[0, 1, p], T[1, 1, p], T[2, 1, p], nought), w8, w4)
-            gx8, gx4 = in_row(four(T[0, 0, p], T[1, 0, p], T[2, 0, p], nought), w8, w4)
-            eight, rest = eight + gz8, rest + gz4
-        plane = 4 * ((int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p])) * space.n2 + int(s[2, FIRST, p]))
-        for i in range(3):
-            row8, row4, at = eight, rest, plane
-            for j in range(3):
-                w = s[0, W + i, p] * s[1, W + j, p]
-                if uses_basis_gradient(gradient):
-                    gx, gy = s[0, G + i, p] * s[1, W + j, p], s[0, W + i, p] * s[1, G + j, p]
-                    add(nodes, at, splat8(gx), splat4(gx), gx8, gx4)
-                    add(nodes, at, splat8(gy), splat4(gy), gy8, gy4)
-                add(nodes, at, splat8(w), splat4(w), row8, row4)
-                row8, row4 = row8 + Y8, row4 + Y4
-                at += 4 * space.n2
-            eight, rest = eight + X8, rest + X4
-            plane += 4 * space.n1 * space.n2
-
-
-@kernel(inline=True)
-def keep(target, k, p, D, column):
-    """Column k of a tensor of particle p."""
-    for c in range(D):
-        target[c, k, p] = item(column, c)
-
-
-@kernel(inline=True)
-def same_gradient(gradient, chunk, count):
-    """With the MLS gradient it is the slope: copied where it has an array of its own."""
-    if not uses_basis_gradient(gradient) and chunk.L.ctypes.data != chunk.C.ctypes.data:
-        n = chunk.m.shape[0]
-        for k in range(chunk.v.shape[0] * chunk.v.shape[0]):
-            for p in range(0, count, EIGHT):
-                store(chunk.L, k * n + p, load8(chunk.C, k * n + p))
-
-
-@kernel(inline=True)
 def gather_plane(space, gradient, chunk, count, nodes):
     """Velocity, slope and gradient of the particles of a chunk in a plane."""
-    s = chunk.s
+    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
     nought = nodes.dtype.type(0)
     for p in range(count):
         v8, X8, gx8 = splat8(nought), splat8(nought), splat8(nought)
@@ -140,20 +169,20 @@ def gather_plane(space, gradient, chunk, count, nodes):
                 gx8, gx4 = fma(splat8(g), eight, gx8), fma(splat4(g), rest, gx4)
             at += 4 * space.n1
         w0, w1, w2 = s[1, W, p], s[1, W + 1, p], s[1, W + 2, p]
-        v = along(v8, v4, w0, w1, w2)
-        chunk.v[0, p], chunk.v[1, p] = item(v, 0), item(v, 1)
-        keep(chunk.C, 0, p, 2, along(X8, X4, w0, w1, w2))
-        keep(chunk.C, 1, p, 2, along(v8, v4, s[1, B, p], s[1, B + 1, p], s[1, B + 2, p]))
+        mine = p * wide
+        store(packed, mine, along(v8, v4, w0, w1, w2))
+        store(packed, mine + 4, along(X8, X4, w0, w1, w2))
+        store(packed, mine + 8, along(v8, v4, s[1, B, p], s[1, B + 1, p], s[1, B + 2, p]))
         if uses_basis_gradient(gradient):
-            keep(chunk.L, 0, p, 2, along(gx8, gx4, w0, w1, w2))
-            keep(chunk.L, 1, p, 2, along(v8, v4, s[1, G, p], s[1, G + 1, p], s[1, G + 2, p]))
-    same_gradient(gradient, chunk, count)
+            store(packed, mine + 12, along(gx8, gx4, w0, w1, w2))
+            store(packed, mine + 16, along(v8, v4, s[1, G, p], s[1, G + 1, p], s[1, G + 2, p]))
+    unpack_plane(gradient, chunk, count)
 
 
 @kernel(inline=True)
 def gather_volume(space, gradient, chunk, count, nodes):
     """Velocity, slope and gradient of the particles of a chunk in a volume."""
-    s = chunk.s
+    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
     nought = nodes.dtype.type(0)
     for p in range(count):
         v8, X8, Y8, gx8, gy8 = splat8(nought), splat8(nought), splat8(nought), splat8(nought), splat8(nought)
@@ -181,13 +210,13 @@ def gather_volume(space, gradient, chunk, count, nodes):
                 gy8, gy4 = fma(splat8(w), grad8, gy8), fma(splat4(w), grad4, gy4)
             plane += 4 * space.n1 * space.n2
         w0, w1, w2 = s[2, W, p], s[2, W + 1, p], s[2, W + 2, p]
-        v = along(v8, v4, w0, w1, w2)
-        chunk.v[0, p], chunk.v[1, p], chunk.v[2, p] = item(v, 0), item(v, 1), item(v, 2)
-        keep(chunk.C, 0, p, 3, along(X8, X4, w0, w1, w2))
-        keep(chunk.C, 1, p, 3, along(Y8, Y4, w0, w1, w2))
-        keep(chunk.C, 2, p, 3, along(v8, v4, s[2, B, p], s[2, B + 1, p], s[2, B + 2, p]))
+        mine = p * wide
+        store(packed, mine, along(v8, v4, w0, w1, w2))
+        store(packed, mine + 4, along(X8, X4, w0, w1, w2))
+        store(packed, mine + 8, along(Y8, Y4, w0, w1, w2))
+        store(packed, mine + 12, along(v8, v4, s[2, B, p], s[2, B + 1, p], s[2, B + 2, p]))
         if uses_basis_gradient(gradient):
-            keep(chunk.L, 0, p, 3, along(gx8, gx4, w0, w1, w2))
-            keep(chunk.L, 1, p, 3, along(gy8, gy4, w0, w1, w2))
-            keep(chunk.L, 2, p, 3, along(v8, v4, s[2, G, p], s[2, G + 1, p], s[2, G + 2, p]))
-    same_gradient(gradient, chunk, count)
+            store(packed, mine + 16, along(gx8, gx4, w0, w1, w2))
+            store(packed, mine + 20, along(gy8, gy4, w0, w1, w2))
+            store(packed, mine + 24, along(v8, v4, s[2, G, p], s[2, G + 1, p], s[2, G + 2, p]))
+    unpack_volume(gradient, chunk, count)

@@ -1,0 +1,140 @@
+"""Chunks packed for the rows of a stencil, and unpacked: from components of eight particles to fours of one particle, by transposing.
+
+Chunk.packed holds a particle a row. To scatter: value at the first node with the mass, growth from node to node by direction, with the basis gradient the
+columns of its tensor. Gathered: velocity, slope by direction, gradient by direction.
+"""
+
+from mpm.jit import kernel
+from mpm.lanes import EIGHT, fma, high, join, load4, load8, low, splat8, store, transposed
+from mpm.transfer.roles import uses_basis_gradient
+from mpm.transfer.stencils import OFFSET
+
+FOUR = 4
+
+
+@kernel(inline=True)
+def pack(packed, p, k, a, b, c, d):
+    """Components a, b, c, d of eight particles from p to place k of their fours."""
+    wide = packed.shape[1]
+    for half in range(2):
+        first, second, third, fourth = transposed(low(a), low(b), low(c), low(d)) if half == 0 else transposed(high(a), high(b), high(c), high(d))
+        at = (p + FOUR * half) * wide + FOUR * k
+        store(packed, at, first)
+        store(packed, at + wide, second)
+        store(packed, at + 2 * wide, third)
+        store(packed, at + 3 * wide, fourth)
+
+
+@kernel(inline=True)
+def unpack(packed, p, k):
+    """The inverse: components of eight particles from p."""
+    wide = packed.shape[1]
+    at = p * wide + FOUR * k
+    a, b, c, d = transposed(load4(packed, at), load4(packed, at + wide), load4(packed, at + 2 * wide), load4(packed, at + 3 * wide))
+    at += FOUR * wide
+    e, f, g, h = transposed(load4(packed, at), load4(packed, at + wide), load4(packed, at + 2 * wide), load4(packed, at + 3 * wide))
+    return join(a, e), join(b, f), join(c, g), join(d, h)
+
+
+@kernel(inline=True)
+def pack_volume(space, gradient, chunk, count):
+    """Value at the first node [m], and what it grows by from node to node, as fours; with the basis gradient its tensor's columns."""
+    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m.shape[0]
+    real = chunk.m.dtype.type
+    h, nought = splat8(real(space.h)), splat8(real(0))
+    rows = s.shape[1] * n
+    for p in range(0, count, EIGHT):
+        x, y, z = load8(s, OFFSET * n + p), load8(s, rows + OFFSET * n + p), load8(s, 2 * rows + OFFSET * n + p)
+        xx, xy, xz = load8(A, p), load8(A, n + p), load8(A, 2 * n + p)
+        yx, yy, yz = load8(A, 3 * n + p), load8(A, 4 * n + p), load8(A, 5 * n + p)
+        zx, zy, zz = load8(A, 6 * n + p), load8(A, 7 * n + p), load8(A, 8 * n + p)
+        ax = fma(x, xx, fma(y, xy, fma(z, xz, load8(a, p))))
+        ay = fma(x, yx, fma(y, yy, fma(z, yz, load8(a, n + p))))
+        az = fma(x, zx, fma(y, zy, fma(z, zz, load8(a, 2 * n + p))))
+        pack(chunk.packed, p, 0, ax, ay, az, load8(chunk.m, p))
+        pack(chunk.packed, p, 1, h * xx, h * yx, h * zx, nought)
+        pack(chunk.packed, p, 2, h * xy, h * yy, h * zy, nought)
+        pack(chunk.packed, p, 3, h * xz, h * yz, h * zz, nought)
+        if uses_basis_gradient(gradient):
+            pack(chunk.packed, p, 4, load8(T, p), load8(T, 3 * n + p), load8(T, 6 * n + p), nought)
+            pack(chunk.packed, p, 5, load8(T, n + p), load8(T, 4 * n + p), load8(T, 7 * n + p), nought)
+            pack(chunk.packed, p, 6, load8(T, 2 * n + p), load8(T, 5 * n + p), load8(T, 8 * n + p), nought)
+
+
+@kernel(inline=True)
+def pack_plane(space, gradient, chunk, count):
+    """The same in a plane."""
+    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m.shape[0]
+    real = chunk.m.dtype.type
+    h, nought = splat8(real(space.h)), splat8(real(0))
+    rows = s.shape[1] * n
+    for p in range(0, count, EIGHT):
+        x, y = load8(s, OFFSET * n + p), load8(s, rows + OFFSET * n + p)
+        xx, xy, yx, yy = load8(A, p), load8(A, n + p), load8(A, 2 * n + p), load8(A, 3 * n + p)
+        ax, ay = fma(x, xx, fma(y, xy, load8(a, p))), fma(x, yx, fma(y, yy, load8(a, n + p)))
+        pack(chunk.packed, p, 0, ax, ay, load8(chunk.m, p), nought)
+        pack(chunk.packed, p, 1, h * xx, h * yx, nought, nought)
+        pack(chunk.packed, p, 2, h * xy, h * yy, nought, nought)
+        if uses_basis_gradient(gradient):
+            pack(chunk.packed, p, 3, load8(T, p), load8(T, 2 * n + p), nought, nought)
+            pack(chunk.packed, p, 4, load8(T, n + p), load8(T, 3 * n + p), nought, nought)
+
+
+@kernel(inline=True)
+def columns_plane(target, k, p, n, column):
+    """Column k of a tensor of eight particles from p, from components (x, y, ...)."""
+    store(target, k * n + p, column[0])
+    store(target, (2 + k) * n + p, column[1])
+
+
+@kernel(inline=True)
+def columns_volume(target, k, p, n, column):
+    """The same in three directions."""
+    store(target, k * n + p, column[0])
+    store(target, (3 + k) * n + p, column[1])
+    store(target, (6 + k) * n + p, column[2])
+
+
+@kernel(inline=True)
+def same_gradient(gradient, chunk, count):
+    """With the MLS gradient it is the slope: copied where it has an array of its own."""
+    if not uses_basis_gradient(gradient) and chunk.L.ctypes.data != chunk.C.ctypes.data:
+        n = chunk.m.shape[0]
+        for k in range(chunk.v.shape[0] * chunk.v.shape[0]):
+            for p in range(0, count, EIGHT):
+                store(chunk.L, k * n + p, load8(chunk.C, k * n + p))
+
+
+@kernel(inline=True)
+def unpack_plane(gradient, chunk, count):
+    """What was gathered, to v, C and L of the chunk."""
+    packed, n = chunk.packed, chunk.m.shape[0]
+    for p in range(0, count, EIGHT):
+        v = unpack(packed, p, 0)
+        store(chunk.v, p, v[0])
+        store(chunk.v, n + p, v[1])
+        columns_plane(chunk.C, 0, p, n, unpack(packed, p, 1))
+        columns_plane(chunk.C, 1, p, n, unpack(packed, p, 2))
+        if uses_basis_gradient(gradient):
+            columns_plane(chunk.L, 0, p, n, unpack(packed, p, 3))
+            columns_plane(chunk.L, 1, p, n, unpack(packed, p, 4))
+    same_gradient(gradient, chunk, count)
+
+
+@kernel(inline=True)
+def unpack_volume(gradient, chunk, count):
+    """The same in three directions."""
+    packed, n = chunk.packed, chunk.m.shape[0]
+    for p in range(0, count, EIGHT):
+        v = unpack(packed, p, 0)
+        store(chunk.v, p, v[0])
+        store(chunk.v, n + p, v[1])
+        store(chunk.v, 2 * n + p, v[2])
+        columns_volume(chunk.C, 0, p, n, unpack(packed, p, 1))
+        columns_volume(chunk.C, 1, p, n, unpack(packed, p, 2))
+        columns_volume(chunk.C, 2, p, n, unpack(packed, p, 3))
+        if uses_basis_gradient(gradient):
+            columns_volume(chunk.L, 0, p, n, unpack(packed, p, 4))
+            columns_volume(chunk.L, 1, p, n, unpack(packed, p, 5))
+            columns_volume(chunk.L, 2, p, n, unpack(packed, p, 6))
+    same_gradient(gradient, chunk, count)
