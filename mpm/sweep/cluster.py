@@ -47,6 +47,7 @@ class Cluster:
         self.refused: dict[str, str] = {}
         self.flights: dict[str, tuple[str, Any, Task]] = {}  # task -> worker, future, the task itself
         self.killed: dict[str, str] = {}  # task -> why
+        self.asked: set[tuple[str, str]] = set()  # tasks, with the key of their future, that were asked to stop
         self.memory = memory  # most bytes of a worker, where it is `local`
         self.heavy: set[str] = set()  # tasks that took more
         self.looked = 0.0
@@ -219,10 +220,11 @@ class Cluster:
         return True
 
     def cancel(self, task: str, why: str) -> None:
-        """Ask the worker to stop at its next beat."""
-        if task in self.flights:
+        """Ask the worker to stop at its next beat; once, as each time costs a round trip."""
+        if task in self.flights and (task, self.flights[task][1].key) not in self.asked and self.client is not None:
+            self.asked.add((task, self.flights[task][1].key))
             with contextlib.suppress(Exception):
-                self.client.run(stop, task, why, workers=[self.flights[task][0]], wait=False, on_error="ignore")
+                self.client.run(stop, task, why, workers=[self.flights[task][0]], wait=False)
 
     def kill(self, task: str, why: str) -> None:
         """End the worker of a task, with all it runs; its nanny starts another."""

@@ -59,6 +59,6 @@ def work(text: str, runner: str, topic: str, shared: bool) -> tuple[dict, dict[s
         stops.pop(task.id, None)
 
 
-def stop(task: str, why: str) -> None:
-    """On a worker, beside the task: ask it to stop at its next beat."""
+async def stop(task: str, why: str) -> None:
+    """On a worker, beside the task: ask it to stop at its next beat. (Not waited for, which Dask allows only where it is a coroutine.)"""
     stops[task] = why

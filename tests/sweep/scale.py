@@ -3,8 +3,8 @@
     python tests/sweep/scale.py [POINTS [JOBS [ADDRESS]]]     points of configs/scenes/slab.yaml, conductivity x surface coefficient; row by row
     python tests/sweep/scale.py grow POINTS POINTS ...        the same scene with a runner that takes no time, at several sizes, and what a million would take
 
-Overhead: time between the first and the last finished point, times the workers, a point, less `run_point` alone (mean over 300 of the points, half of them
-before the sweep and half after it). With `local` or an address as third argument they run on Dask.
+Overhead: time between the first and the last finished point, times the workers, a point, less `run_point` alone (mean over 300 of the points, afterwards).
+With `local` or an address as third argument they run on Dask.
 """
 
 import importlib
@@ -17,7 +17,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-import xarray
 
 from mpm.config import load
 from mpm.sweep import api
@@ -61,11 +60,8 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
     found, since = {}, time.perf_counter()
     planned = plan(experiment, 10**7)
     found |= {"points": len(planned), "plan_s": time.perf_counter() - since}
-    run_point = importlib.import_module(runner).run_point
     some = [case.experiment for case in planned.cases[:: max(1, points // 300)]]
     del planned
-    run_point(some[0])
-    each = alone(run_point, some[::2])
     spent, assemble = [], collecting.assemble
 
     def timed(*given):
@@ -79,7 +75,10 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
     try:
         result = api.execute(experiment, out, Options(jobs=jobs, scheduler=address, runner=runner), clock, 10**7)
         assert result.exit_code == 0, result
-        found["alone_ms"] = 500 * (each + alone(run_point, some[1::2]))
+        found["peak_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+        run_point = importlib.import_module(runner).run_point  # not before: a sweep's own process has no kernels
+        run_point(some[0])
+        found["alone_ms"] = 1e3 * alone(run_point, some)
         found["all_in_ms"] = 1e3 * (clock.last - clock.first) * jobs / (found["points"] - 1)
         found["overhead_ms"] = found["all_in_ms"] - found["alone_ms"]
         memory = np.array(clock.memory) / 1e6
@@ -87,7 +86,8 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
         files = [path for path in out.rglob("*.nc") if path.name != "sweep.nc"]
         found |= {"files": len(files), "bytes_a_point": sum(path.stat().st_size for path in files) / found["points"]}
         found |= {"collect_s": spent[-1][0], "collects_meanwhile": len(spent) - 1, "dataset_bytes_a_point": spent[-1][1] / found["points"]}
-        found["peak_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+        import xarray
+
         since = time.perf_counter()
         with xarray.open_dataset(out / "sweep.nc") as data:
             assert int((data.status == 0).sum()) == found["points"]

@@ -219,25 +219,6 @@ def gone(pid):
     return Path(f"/proc/{pid}/stat").read_text().split()[2] == "Z"
 
 
-def all_gone(pids, within):
-    end = time.monotonic() + within
-    while not all(map(gone, pids)) and time.monotonic() < end:
-        time.sleep(0.02)
-    return all(map(gone, pids))
-
-
-@pytest.mark.parametrize("blows, code, within", [([signal.SIGTERM], 143, 2.0), ([signal.SIGINT, signal.SIGINT], 130, 2.0), ([signal.SIGKILL], -9, 2.0)])
-def test_signals_stop_in_time_and_leave_no_orphan(config, tmp_path, marks, blows, code, within):
-    process = start(config([fake.SLOW, fake.HANGS, 0.2]), tmp_path / "out", marks)
-    began = time.monotonic()
-    for blow in blows:
-        process.send_signal(blow)
-        time.sleep(0.1)
-    process.communicate(timeout=20)
-    assert process.returncode == code
-    assert all_gone({int(row[-1]) for row in marks()}, within - (time.monotonic() - began))
-
-
 def test_sigterm_to_the_whole_group_leaves_what_ran_pending(config, tmp_path, marks):
     """As a batch system or `timeout` does it: the workers hear it too, and must not count as killed."""
     process = start(config([fake.BRIEF, fake.SLOW]), tmp_path / "out", marks, start_new_session=True)

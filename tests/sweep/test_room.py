@@ -1,11 +1,7 @@
-import json
 import os
-import subprocess
-import sys
 from collections import namedtuple
 from pathlib import Path
 
-import fake_runner as fake
 import pytest
 
 from mpm.config import load
@@ -37,19 +33,6 @@ def test_what_needs_more_than_is_allowed_is_refused_with_its_estimate_and_runs_w
     assert "failed: needs about" in found.error.values[1] and "and 1 GB are allowed (--memory)" in found.error.values[1]
     assert "--rerun failed" in result.lines[found.run_id.values[1]]["advice"]
     assert go(points, tmp_path, memory=1e9).ran == 0
-
-
-def test_a_worker_that_takes_more_is_ended_and_not_tried_again(config, tmp_path, marks):
-    result = go(config([fake.GROWS, 0.2]), tmp_path, jobs=1, memory=4e8)
-    found = tree_of(tmp_path / "sweep.nc")
-    assert found.status.values.tolist() == [3, 0] and found.attempts.values.tolist() == [1, 1] and result.exit_code == 3
-    assert "of memory, and 400 MB are allowed" in found.error.values[0]
-
-
-def test_an_allocation_far_over_the_limit_fails_at_once(config, tmp_path, marks):
-    go(config([fake.GRABS, 0.2]), tmp_path, jobs=1, memory=4e8)
-    found = tree_of(tmp_path / "sweep.nc")
-    assert found.status.values.tolist() == [3, 0] and found.error.values[0] == "killed: wants more memory than is allowed or free"
 
 
 def test_points_wait_for_memory_that_others_have(tmp_path):
@@ -104,35 +87,3 @@ def test_particles_are_counted_about(shape, volume):
         rim = 0.0 if shape else 60 * cell / 2  # cells that a ball's surface cuts
         assert volume * (1 - 1e-9) <= count * (cell / 2) ** 3 <= volume * (1 + 1e-9 + rim)
         assert memory(experiment) <= memory_at_most(experiment)
-
-
-PEAK = """
-import json, sys
-sys.path.insert(0, sys.argv[2])
-import mpm.runner as runner, h5py
-from mpm.config import load
-from mpm.costs import memory
-from mpm.records import point
-cold, config = json.loads(sys.argv[1])
-if cold: runner.run_point(load(config)); sys.exit()
-experiment = load(config)
-record = point.from_run("a", runner.run_point(experiment), config=experiment.resolved())
-point.pack(record)
-peak = next(int(line.split()[1]) * 1024 for line in open("/proc/self/status") if line.startswith("VmHWM"))
-print(memory(experiment) / peak)
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name, settings", [
-    ("scenes/cube.yaml", {"grid.cell": 0.0125}), ("scenes/slump.yaml", {}), ("scenes/slump.yaml", {"grid.cell": 5e-4}),
-    ("scenes/loaf.yaml", {}), ("scenes/loaf.yaml", {"grid.cell": 2e-4}), ("scenes/dough_rheometer.yaml", {}),
-])  # fmt: skip
-def test_the_estimate_is_within_a_fifth_of_the_peak(name, settings):
-    experiment = load(ROOT / "configs" / name, settings)
-    short = experiment.resolved() | {"sweep": None, "smoke": None}
-    short["time"]["end"] *= 1e-3 if experiment.moving else 1.0
-    short["output"]["every"] = short["time"]["end"]
-    for cold in (True, False):
-        found = subprocess.run([sys.executable, "-c", PEAK, json.dumps([cold, short]), str(ROOT)], capture_output=True, text=True, check=True)
-    assert 0.8 < float(found.stdout) < 1.2

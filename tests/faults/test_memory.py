@@ -1,0 +1,79 @@
+"""R4: a point that needs more memory than there is, is refused before it starts; one that takes more is ended, alone; and the estimate is right."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import fake_runner as fake
+import pytest
+from scenes import config, go
+
+from mpm.config import load
+from mpm.sweep.api import tree_of
+
+ROOT = Path(__file__).parents[2]
+PEAK = """
+import json, sys
+sys.path.insert(0, sys.argv[2])
+import mpm.runner as runner, h5py
+from mpm.config import load
+from mpm.costs import memory
+from mpm.records import point
+cold, config = json.loads(sys.argv[1])
+if cold: runner.run_point(load(config)); sys.exit()
+experiment = load(config)
+record = point.from_run("a", runner.run_point(experiment), config=experiment.resolved())
+point.pack(record)
+peak = next(int(line.split()[1]) * 1024 for line in open("/proc/self/status") if line.startswith("VmHWM"))
+print(memory(experiment) / peak, peak)
+"""
+LARGE = [
+    ("scenes/cube.yaml", {"grid.cell": 0.0125}), ("scenes/slump.yaml", {}), ("scenes/slump.yaml", {"grid.cell": 5e-4}),
+    ("scenes/slump.yaml", {"grid.cell": 2.5e-4}), ("scenes/loaf.yaml", {}), ("scenes/loaf.yaml", {"grid.cell": 2e-4}), ("scenes/dough_rheometer.yaml", {}),
+]  # fmt: skip
+
+
+def ratio(name, settings):
+    """The estimate over the peak of a worker that runs the point, kernels in the cache; and the peak [bytes]."""
+    experiment = load(ROOT / "configs" / name, settings)
+    short = experiment.resolved() | {"sweep": None, "smoke": None}
+    short["time"]["end"] *= 1e-3 if experiment.moving else 1.0
+    short["output"]["every"] = short["time"]["end"]
+    for cold in (True, False):
+        done = subprocess.run([sys.executable, "-c", PEAK, json.dumps([cold, short]), str(ROOT)], capture_output=True, text=True, check=True)
+    return tuple(map(float, done.stdout.split()))
+
+
+def test_the_estimate_of_a_small_point_is_within_a_fifth():
+    assert 0.8 < ratio("scenes/loaf.yaml", {})[0] < 1.2
+
+
+def limited(out, jobs):
+    """A sweep with a limit of 400 MB: a point that is refused, one that creeps over it, one that asks for far more at once, and one that is small."""
+    solid = {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}
+    points = [{"kappa": 0.5, "cell": 1e-8}, {"kappa": fake.GROWS}, {"kappa": fake.GRABS}, {"kappa": 0.2}]
+    result = go(config([1]) | {"materials": {"m": solid}, "sweep": {"points": points}}, out, jobs=jobs, memory=4e8)
+    return result, tree_of(out / "sweep.nc")
+
+
+def test_what_wants_too_much_memory_is_refused_or_ended_alone(tmp_path, marks, table):
+    result, found = limited(tmp_path / "out", jobs=2)
+    refused, grew, grabbed, _ = found.error.values.tolist()
+    ran = {row[1] for row in marks() if row[0] == "run"}
+    assert found.status.values.tolist() == [1, 3, 3, 0] and found.attempts.values.tolist() == [1, 1, 1, 1]
+    assert result.exit_code == 3 and ran == {"11.0", "12.0", "0.2"}
+    assert "needs about" in refused and "400 MB are allowed (--memory)" in refused
+    assert "of memory, and 400 MB are allowed" in grew and grabbed == "killed: wants more memory than is allowed or free"
+    said = "refused before it runs; killed, and not tried again; killed; the others ok, exit code 3"
+    table("a point over the memory limit by its estimate; creeping over it; asking for it at once", said)
+
+
+@pytest.mark.slow
+def test_the_estimate_is_within_a_fifth(table):
+    ratios = {f"{Path(name).stem} {'' if not settings else settings}": ratio(name, settings) for name, settings in LARGE}
+    worst = max(ratios.values(), key=lambda pair: abs(pair[0] - 1))
+    low, high = (pick(peak for _, peak in ratios.values()) / 1e6 for pick in (min, max))
+    said = f"{min(r for r, _ in ratios.values()):.2f} to {max(r for r, _ in ratios.values()):.2f}"
+    table(f"estimate of memory over the peak, {len(ratios)} scenes of {low:.0f} to {high:.0f} MB", said)
+    assert abs(worst[0] - 1) < 0.2, ratios
