@@ -33,6 +33,9 @@ def check(experiment: Any) -> list[Finding]:
                 found += list(rule(experiment, *item))
             except Unknown:
                 continue
+            except KeyError:
+                if not found:  # else it looked up a name that is not there, which `scene.names` has told
+                    raise
     return found
 
 

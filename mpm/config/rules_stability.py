@@ -4,9 +4,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from pydantic import ValidationError
+
 from mpm.config.explain import Finding
+from mpm.config.explain import findings as explained
 from mpm.config.loose import MISSING, Unknown
-from mpm.config.names import Names
+from mpm.config.names import ROOT, Names
 from mpm.config.problems import listed
 from mpm.config.sweep import Sweep
 from mpm.config.vary import Vary
@@ -28,7 +31,13 @@ def findings(experiment: Any) -> Iterator[Finding]:
         if set(across) & set(along):
             yield Finding(("stability", "along"), "the axes are the same parameter", "two different parameters", on_key=True)
             return
-        vary = Vary(axes_of(stability), Names(experiment))
+        try:
+            sweep = axes_of(stability)
+        except ValidationError as error:  # what is missing is told already, where the section itself is checked
+            told = explained(error, ROOT.walk(("sweep",)), ("sweep",))
+            yield from (replace(found, path=moved(found.path, across, labels)) for found in told if found.given is not MISSING)
+            return
+        vary = Vary(sweep, Names(experiment))
         vary.read()
         for found in vary.found:
             yield replace(found, path=moved(found.path, across, labels))
@@ -36,7 +45,7 @@ def findings(experiment: Any) -> Iterator[Finding]:
             for panel in line.panels:
                 if panel not in labels:
                     yield Finding(("stability", "lines", index, "panels"), f"there is no panel {panel!r}", listed(labels) or "no panels")
-        if stability.steps is not None and getattr(Names(experiment).resolve(next(iter(along)))[1].quantity, "unit", "") != "s":
+        if stability.steps is not None and not vary.found and getattr(Names(experiment).resolve(next(iter(along)))[1].quantity, "unit", "") != "s":
             yield Finding(("stability", "steps"), "the vertical axis is no time step, so runs cannot last a number of it", "no `steps`", on_key=True)
     except Unknown:
         return

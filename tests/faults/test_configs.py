@@ -1,6 +1,8 @@
 """R10: whatever stands in a config ends in an experiment or in errors with places: no traceback, under a second and 300 MB, nothing written."""
 
+import json
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -10,12 +12,13 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 from mpm.config import ConfigError, load
 from mpm.sweep.cases import plan
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-TEXTS = [path.read_text(encoding="utf-8") for path in sorted([*CONFIGS.glob("scenes/*.yaml"), *CONFIGS.glob("verification/*.yaml")])]
+TEXTS = [path.read_text(encoding="utf-8") for path in sorted(CONFIGS.rglob("*.yaml"))]
 JUNK = ["null", "[]", "{}", "-1", "1e308", ".inf", ".nan", "true", "&a ", "*a", "!!python/object:os.system ", "\t", "\x00", "κ", "../../x", "/etc/passwd",
         "[[[[", "? ", ": ", "\u2028", "\ud7ff", "---", "%YAML 9.9", "0x10", "9**9**9 m", "1e400", "9" * 5000,
         "__class__", "{linear: [0, 1, 100000000]}", "extends: ../x"]  # fmt: skip
@@ -79,6 +82,20 @@ def test_configs_at_random_at_length(tmp_path, monkeypatch, table):
     assert grown < BYTES and not written
 
 
+@pytest.mark.slow
+def test_configs_by_coverage_at_length(tmp_path, table):
+    """libFuzzer keeps what reaches new code (fuzz.py): pip install 'mpm[fuzz]'."""
+    pytest.importorskip("atheris")
+    runs = os.environ.get("MPM_FUZZ", "100000")
+    command = [sys.executable, str(Path(__file__).parent / "fuzz.py"), str(tmp_path), runs]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=6 * 3600, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    found = json.loads(done.stdout.splitlines()[-1])
+    said = f"0 tracebacks, slowest {found['slowest']:.2f} s, memory grew by {found['grown'] / 1e6:.0f} MB, {len(found['written'])} files written"
+    table(f"{found['configs']} fuzzed configs (atheris, by coverage)", said)
+    assert found["slowest"] < SECONDS and found["grown"] < BYTES and not found["written"]
+
+
 def base(**more):
     text = "grid: {dimension: 1, size: [0.1], cell: 1e-3}\nmaterials: {m: {density: 1000, heat: {fourier: {kappa: 1, alpha: 1000}}}}\ntime: {end: 10}\n"
     text += "bodies: {slab: {shape: {box: {lower: [0], upper: [0.05]}}, material: m, temperature: 300}}\n"
@@ -105,6 +122,18 @@ HOSTILE = {
     "power": base(sweep="{axes: {kappa: [1, 2]}, where: 'kappa < 9**9**9**9'}"),
     "tag": base(title="!!python/object/apply:os.system ['touch owned']"),
 }
+STABLE = base(surfaces="[{of: slab, convection: {beta: 1, outside: 300}}]") + """
+stability:
+  across: {beta: {log: [0.01, 100, 9]}}
+  along: {method.heat_step: {log: [0.001, 10, 9]}}
+"""
+POINT = """
+grid: {dimension: 0}
+bodies: {b: {shape: {point: {strain: {xx: 0.1}}}, material: m}}
+materials: {m: {density: 1, elastic: {hencky: {E: 1, nu: 0}}}}
+loading: [{stress: {xx: 0, yy: 0, zz: 0}}]
+time: {end: 1}
+"""
 CODE = """
 import sys, time
 from pathlib import Path
@@ -137,6 +166,21 @@ def test_hostile_configs(tmp_path, table):
     slowest = max(float(seconds) for _, _, seconds in rows)
     table(f"{len(rows)} YAML bombs, product bombs, hostile names and code", f"all refused, slowest {slowest:.2f} s, {most / 1e6:.0f} MB in all")
     assert slowest < SECONDS and most < BYTES and sorted(tmp_path.rglob("*")) == before
+
+
+WRONG = {
+    "axis of a map": (STABLE, "{log: [0.001, 10, 9]}", "{log: [0.001, 10]}", "stability.along.method.heat_step.log: expected 3 entries"),
+    "name of an axis of a map": (STABLE + "  steps: 100\n", "method.heat_step", "method.heat_stop", "nothing in this file is called 'method.heat_stop'"),
+    "material of a point": (POINT, "material: m}", "material: n}", "bodies.b.material: there is no such material (given 'n')"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_the_fuzzer_found(name):
+    text, good, bad, said = WRONG[name]
+    assert good in text
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        load(YAML(typ="safe", pure=True).load(text.replace(good, bad)))
 
 
 def test_out_through_a_link_stays_in_its_folder(tmp_path, marks):
