@@ -1,12 +1,14 @@
 """Guards of a run: planted blow-ups are found at once and named, what is sound is left alone, advice is from the step that was taken, and it costs little."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mpm
 import mpm.simulation as simulation
-from mpm.guards import Guards, holes
+from mpm.guards import NOISE, ROUNDING, SLOPES, Guards, holes, stagger
 
 DT = 0.01
 FIELDS = {"temperature": "theta", "gradient of temperature": "c", "J": "J", "strain": "B", "affine velocity": "C", "velocity": "v", "position": "x"}
@@ -89,11 +91,12 @@ def test_advice_names_the_step_and_its_limit(core):
     assert not bold.outcome.ok and "lower `time.safety` to 1" in bold.outcome.advice
 
 
-def heat_alone(core, changes):
+def heat_alone(core, changes, bodies=None):
     """A body at rest that cools in explicit heat steps; nothing heats it."""
     air = [{"of": "body", "convection": {"beta": 0.5, "outside": core.COLD}}]
     base = {"method.heat": "explicit", "time.end": 400.0, "output.every": 40.0, "time.step": 1e3}
-    return core.play(core.experiment(1, base | changes, drop=("expansion", "heating"), surfaces=air))[1]
+    given = {} if bodies is None else {"bodies": bodies, "grid": {"dimension": 1, "size": [7.0], "cell": 0.25}}
+    return core.play(core.experiment(1, base | changes, drop=("expansion", "heating"), surfaces=air, **given))[1]
 
 
 def test_a_heat_step_past_its_limit_leaves_the_bounds_of_its_data(core):
@@ -125,9 +128,46 @@ def test_energy_from_nowhere_ends_a_run(core):
         return core.play(core.experiment(1, quiet, drop=("surfaces", "expansion", "heating")), begin, beat)[1]
 
     assert play(1.0).outcome.ok
-    run = play(10.0)
-    assert run.outcome.kind == "energy_growth" and "J more than at the start" in run.outcome.message
-    assert 5.0 <= run.times[-1] < 6.0
+    for factor in (10.0, 2.0):
+        run = play(factor)
+        assert run.outcome.kind == "energy_growth" and "J more than at the start" in run.outcome.message
+        assert 5.0 <= run.times[-1] < 6.0
+
+
+def test_the_stagger_of_a_step_is_not_taken_for_growth(core, monkeypatch):
+    """A swing at the automatic step seems to gain and lose; less what positions and velocities stand apart by it gains nothing."""
+    gains, frame = [], Guards.frame
+
+    def watched(self, scene, clock, series):
+        found = frame(self, scene, clock, series)
+        if clock.stepped is not None:
+            gained = series["energy_total"][-1] - self.begun
+            gains.append((gained / self.most, (gained - stagger(scene, clock.stepped[0])) / self.most))
+        return found
+
+    monkeypatch.setattr(Guards, "frame", watched)
+    bar = Path(__file__).parents[1] / "configs" / "verification" / "hencky_bar.yaml"
+    assert mpm.run_point(mpm.load(bar, {"grid.cell": 0.125})).outcome.ok
+    raw, less = np.max(gains, axis=0)
+    assert raw > 0.01 and less < 0.001, (raw, less)
+
+
+def test_temperatures_may_overshoot_by_what_their_transfer_does(core):
+    from mpm.scene.build import build
+
+    allowed = {}
+    for kind in ("apic", "pic", "flip", "affine_flip"):
+        allowed[kind] = Guards(build(core.experiment(1, {"method.temperature": kind}))).data[0].allowed
+    assert allowed == {"apic": SLOPES, "pic": SLOPES, "flip": NOISE, "affine_flip": NOISE}
+    assert Guards(build(core.experiment(1, {"method.bounds": "repair"}))).data[0].allowed == ROUNDING
+
+
+def test_sub_steps_on_hat_functions_are_not_automatic(core):
+    """A particle that has just crossed a grid line: explicit sub-steps on hat functions leave the bounds of the data; `auto` does not take them."""
+    bodies = {"body": {"shape": {"box": {"lower": [0.5], "upper": [4.53]}}, "temperature": core.HOT, "material": "solid"}}
+    changes = {"grid.basis": "linear", "method.heat_step": 8.0, "time.end": 200.0}
+    ended = {heat: heat_alone(core, changes | {"method.heat": heat}, bodies).outcome.kind for heat in ("explicit", "auto")}
+    assert ended == {"explicit": "max_principle", "auto": "completed"}
 
 
 def test_particles_that_come_apart_warn_or_end_the_run(core):

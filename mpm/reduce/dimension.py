@@ -1,9 +1,10 @@
 """Fewer directions: an axisymmetric scene for a round body, a line or a plane for a slab or a bar whose sides are insulated, or nearly so.
 
-Error     none by symmetry; a round body is cut differently by the two grids, which differ by 0.2/n^2 at most, n cells a radius (the rigid solver with lumped
-          mass, physics.md 12: 2.6e-3 and 6.4e-4 at n = 8 and 16). Of sides that exchange and are left out: what they would bring to the mean, at most
-          1 - exp(-beta S t/(R0 alpha V)), where means are asked for; at a probe in the depth d at most erfc(d/(2 sqrt(D t))) a side (a half space whose
-          face is held), and no more than the exchange's own 2 beta sqrt(t/(pi kappa R0 alpha)) (a half space under the full flux)
+Error     none by symmetry; else the tolerance of the steps, which are not the same (mpm.reduce.offers.own), and more. A round body is cut differently by
+          the two grids, which differ by 0.2/n^2 at most, n cells a radius (lumped mass, physics.md 12: 2.6e-3 and 6.4e-4 at n = 8 and 16). Of sides
+          that exchange and are left out: what they would bring to the mean, at most 1 - exp(-beta S t/(R0 alpha V)), where means are asked for; at a
+          probe in the depth d at most erfc(d/(2 sqrt(D t))) a side (a half space whose face is held), and no more than the exchange's own
+          2 beta sqrt(t/(pi kappa R0 alpha)) (a half space under the full flux)
 Fails     for bodies that are not centred on their axis, or turned boxes: then there is no offer
 """
 
@@ -11,7 +12,7 @@ import math
 from typing import Any
 
 from mpm.reduce.moving import prism, revolved
-from mpm.reduce.offers import Offer, asked, bare, entries, loaded, only_body, refused
+from mpm.reduce.offers import Offer, asked, bare, entries, loaded, only_body, own, refused
 from mpm.scene.scales import Scales, scales
 
 SIDES = {1: (("left", "right"),), 2: (("left", "right"), ("bottom", "top")), 3: (("left", "right"), ("front", "back"), ("bottom", "top"))}
@@ -56,8 +57,9 @@ def fewer(experiment: Any, left: float) -> Offer | str:
     for count in range(1, dimension):
         kept = sorted(ranked[:count])
         offers.append((sum(errors[axis] for axis in ranked[count:]), kept))
-    error, kept = next(((error, kept) for error, kept in offers if error + sampled <= left), min(offers))
-    return along(experiment, name, body, kept, error + sampled)
+    offers = [(error + sampled + (own(experiment) if error > 0 else 0.0), kept) for error, kept in offers]  # by symmetry the steps are the same too
+    error, kept = next(((error, kept) for error, kept in offers if error <= left), min(offers))
+    return along(experiment, name, body, kept, error)
 
 
 def along(experiment: Any, name: str, body: Any, kept: list[int], error: float) -> Offer:
@@ -179,5 +181,5 @@ def revolve(experiment: Any, data: dict, probes: dict, shift: tuple, factor: flo
     if "offset" in data["method"]:
         data["method"]["offset"] = [0.0, *shift]
     (one,) = scales(experiment).values()
-    error = ROUND * (experiment.grid.cell / (one.reach or max(one.extent) / 2)) ** 2
+    error = ROUND * (experiment.grid.cell / (one.reach or max(one.extent) / 2)) ** 2 + own(experiment)
     return Offer("axisymmetric", "the angle: nothing varies round the axis", loaded(data, experiment), error, factor)

@@ -1,14 +1,14 @@
 """One temperature for the whole body: R0 alpha V dTheta/dt = -beta S (Theta - outside) (physics.md 10, 0-D).
 
 Error     the quasi-steady unevenness of the inside (mpm.scene.groups.uneven), an upper estimate; exp(-1) of it, the largest x exp(-x), where only
-          means are asked for: they are off by as much as the rate is, a third of the unevenness or less
+          means are asked for: they are off by as much as the rate is, a third of the unevenness or less; and the tolerance of the full model's steps
 Fails     for held surfaces, fluxes, radiation and surroundings that change: the material point has none of them, and so there is no offer
 """
 
 import math
 from typing import Any
 
-from mpm.reduce.offers import Offer, asked, bare, loaded, only_body, refused
+from mpm.reduce.offers import Offer, asked, bare, loaded, only_body, own, refused
 from mpm.scene.groups import uneven
 
 MEAN = math.exp(-1)
@@ -47,7 +47,7 @@ def lumped(experiment: Any, left: float) -> Offer | str:
     data["time"] = {"end": experiment.time.end}
     data["output"]["probes"] = {probe: [] for probe in experiment.output.probes}
     data.pop("method")
-    error = uneven(one) * (MEAN if want.means_only else 1.0)
+    error = uneven(one) * (MEAN if want.means_only else 1.0) + own(experiment)
     shape = experiment.grid.dimension
     factor = one.volume / (2 * math.pi if shape == "axisymmetric" else 1.0)
     return Offer("lumped", f"conduction inside {name}: one temperature", loaded(data, experiment), error, factor)

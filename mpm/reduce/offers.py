@@ -124,6 +124,16 @@ def driving(experiment: Any) -> float:
     return span(experiment)
 
 
+def own(experiment: Any) -> float:
+    """What the steps of a rigid full model are off by themselves: its tolerance, of the driving difference. Another model steps otherwise, and differs by it.
+
+    Measured: 7.9e-5 at the tolerance 1e-4 (configs/studies/reduction/wide_slab.yaml), where the side that is left out makes 7e-13.
+    """
+    from mpm.rigid import Method
+
+    return 0.0 if experiment.moving else getattr(experiment.method.rigid, "tolerance", Method.tolerance)
+
+
 def crossing(series: np.ndarray, times: np.ndarray, level: float) -> float:
     """When a series first reaches a level, linear in between; nan where it never does."""
     before, after = series[:-1] - level, series[1:] - level

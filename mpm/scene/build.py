@@ -189,6 +189,15 @@ def gradient_operator(experiment):
     return Mls() if experiment.method.gradient == "mls" and experiment.grid.basis != "linear" else Bspline()
 
 
+def heat_method(experiment) -> HeatMethod:
+    """As the config has it; on hat functions `auto` is implicit: between transfers they bear no explicit step (docs/stability.md, `heat_substeps`)."""
+    heat = experiment.method.heat
+    kind = type(heat).kind
+    if kind == "auto" and experiment.grid.basis == "linear":
+        return HeatMethod("implicit", 2)
+    return HeatMethod(kind, getattr(heat, "order", 1), getattr(heat, "tolerance", HeatMethod.tolerance))
+
+
 def wall_kinds(experiment) -> np.ndarray:
     """(3, 2) kinds; slip where the config says nothing, and on the axis."""
     kinds = np.full((3, 2), KINDS["slip"])
@@ -218,7 +227,7 @@ def build(experiment, exact=None) -> Scene:
         begin(bodies, exact, zero, space.h)
     if experiment.method.locking is not None:
         bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
-    heat = experiment.method.heat
+    heat = heat_method(experiment)
     if isinstance(exact, Motion):
         first, exact = exact.begin(bodies[0])
         bodies = (first, *bodies[1:])
@@ -240,7 +249,7 @@ def build(experiment, exact=None) -> Scene:
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
-        heat=HeatMethod(type(heat).kind, getattr(heat, "order", 1), getattr(heat, "tolerance", 1e-9)),
+        heat=heat,
         scale=scale,
         watch=watch(experiment, times, exact),
     )

@@ -182,8 +182,21 @@ def errors(experiment: Any, tree: Any) -> tuple[np.ndarray, np.ndarray | None, s
     ok = root.status.values == OK
     found = np.max([np.abs(root[key].values) / (1.0 if key in RELATIVE else scale) for key in wanted], axis=0)
     most = root["error_max"].values / scale if wanted == ["error_l2"] else None
-    said = " and ".join(root[key].attrs.get("long_name", key) for key in wanted) + ("" if scale == 1.0 else f", over {scale:.4g}")
+    said = joined([root[key].attrs.get("long_name", key) for key in wanted]) + ("" if scale == 1.0 else f", over {scale:.4g}")
     return np.where(ok, found, np.nan), most, said
+
+
+def joined(texts: list[str]) -> str:
+    """Names as one, without what they begin and end with in common: `error of displacement and temperature over its size`."""
+    words = [text.split() for text in texts]
+    if len(words) < 2:
+        return "".join(texts)
+    shortest = min(map(len, words))
+    alike = lambda places: next((k for k, i in enumerate(places) if len({one[i] for one in words}) > 1), shortest)  # noqa: E731
+    head = alike(range(shortest))
+    tail = min(alike(range(-1, -shortest - 1, -1)), shortest - head)
+    middles = " and ".join(" ".join(one[head : len(one) - tail]) for one in words)
+    return " ".join([*words[0][:head], *([middles] if middles.strip(" and") else []), *words[0][len(words[0]) - tail :]])
 
 
 def wanted_errors(experiment: Any, finals: Any) -> list[str]:

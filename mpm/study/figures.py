@@ -1,12 +1,16 @@
 """The figures of "Speed against accuracy" in the README, by one command: `python -m mpm.study.figures [NAME...]`.
 
 Each configs/studies/<name>.yaml that has a `chart:` is charted into results/<name>-chart (what is there is kept) and its figure goes to docs/chart_<name>.png;
-`theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for robin_cylinder: scikit-fem lives in an environment of its own.
+`theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for robin_cylinder: scikit-fem lives in an environment of its own; `--fem PYTHON` is short
+for its P1 and P2 by configs/studies/peers/fem_disc.py. Stopped anywhere, the same command goes on.
+`--quick`: three places a path and two rounds, into results/<name>-chart-quick alone; neither docs/ nor fronts.json change.
 """
 
 import argparse
 import json
 import math
+import shlex
+import time
 from pathlib import Path
 
 from mpm.records.netcdf import write_whole
@@ -24,12 +28,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join([*names, *OTHERS])}; all unless given")
     parser.add_argument("--peer", action="append", default=[], metavar="NAME=COMMAND")
+    parser.add_argument("--fem", metavar="PYTHON", help="an interpreter that has scikit-fem")
     parser.add_argument("--compiling", action="store_true", help="time compilation too (mpm chart does unless told otherwise)")
+    parser.add_argument("--quick", action="store_true")
     given = parser.parse_args()
     peers = dict(pair.split("=", 1) for pair in given.peer)
-    for name in given.names or [*names, *OTHERS]:
-        for line in OTHERS[name]() if name in OTHERS else charted(name, peers if name == BESIDE else {}, given.compiling):
+    if given.fem:
+        program = shlex.join([given.fem, str(STUDIES / "peers" / "fem_disc.py")])
+        peers |= {"P1": f"{program} 1", "P2": f"{program} 2"}
+    for name in given.names or [*names, *([] if given.quick else OTHERS)]:
+        began = time.monotonic()
+        for line in OTHERS[name]() if name in OTHERS else charted(name, peers if name == BESIDE else {}, given.compiling, given.quick):
             print(f"{name}: {line}", flush=True)
+        print(f"{name}: {time.monotonic() - began:.0f} s", flush=True)
 
 
 def small(path: Path) -> None:
@@ -67,7 +78,7 @@ def return_map() -> list[str]:
 OTHERS = {"theory": theory, "return_map": return_map}
 
 
-def charted(name: str, peers: dict[str, str], cold: bool) -> list[str]:
+def charted(name: str, peers: dict[str, str], cold: bool, quick: bool = False) -> list[str]:
     """The chart of one study, and what it says."""
     import xarray
 
@@ -76,14 +87,17 @@ def charted(name: str, peers: dict[str, str], cold: bool) -> list[str]:
     from mpm.study.chart import chart, with_chart
     from mpm.sweep.engine import Options
 
-    experiment = with_chart(load(STUDIES / f"{name}.yaml"))
-    result = chart(experiment, Path("results") / f"{name}-chart", Options(), peers=peers, cold=cold)
+    experiment = with_chart(load(STUDIES / f"{name}.yaml", {"chart.repeats": 2} if quick else {}), quick)
+    out = Path("results") / f"{name}-chart{'-quick' if quick else ''}"
+    result = chart(experiment, out, Options(), peers=peers, cold=cold)
     if result.stopped:
-        return [f"stopped ({result.stopped}); the same command goes on"]
+        raise SystemExit(f"{name}: stopped ({result.stopped}); the same command goes on")
     with xarray.open_dataset(result.dataset, engine="h5netcdf") as data:
-        speed_accuracy(data.load(), DOCS / f"chart_{name}.png")
-        small(DOCS / f"chart_{name}.png")
-        remember(name, experiment, data)
+        picture = out / "chart.png" if quick else DOCS / f"chart_{name}.png"
+        speed_accuracy(data.load(), picture)
+        if not quick:
+            small(picture)
+            remember(name, experiment, data)
     return result.sentences
 
 

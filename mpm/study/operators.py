@@ -23,6 +23,7 @@ import time
 import numpy as np
 
 from mpm.basis import stencil
+from mpm.integrate.heat_chebyshev import DAMPING
 from mpm.integrate.timestep import CONDUCTION, SUBSTEPS, WAVE
 from mpm.jit import kernel
 from mpm.state import PAD, Quadratic
@@ -146,6 +147,20 @@ def substeps(cloud: Cloud, method: str, dt: float, count: int) -> float:
     S = (U * s) @ U.T
     step = S @ powers if method in ("APIC", "PIC") else np.eye(len(B)) + S @ (powers - np.eye(len(B)))
     return float(np.max(np.abs(np.linalg.eigvals(step))))
+
+
+def stabilised(cloud: Cloud, method: str, dt: float, count: int) -> float:
+    """Spectral radius of a Runge-Kutta-Chebyshev step of `count` stages on the nodes (mpm.integrate.heat_chebyshev) and one transfer (APIC, PIC, FLIP)."""
+    T = np.polynomial.chebyshev.Chebyshev([0.0] * count + [1.0])
+    w0 = 1.0 + DAMPING / count**2
+    first, second = T.deriv()(w0), T.deriv(2)(w0)
+    b = second / first**2
+    B = (cloud.root[:, None, None] * cloud.G * np.sqrt(cloud.V)[:, None]).reshape(len(cloud.root), -1)
+    rates, modes = np.linalg.eigh(B @ B.T)
+    polynomial = (modes * (1.0 - b * T(w0) + b * T(w0 - first / second * dt * rates))) @ modes.T
+    s, U = cloud.affine if method == "APIC" else cloud.plain
+    S, one = (U * s) @ U.T, np.eye(len(B))
+    return float(np.max(np.abs(np.linalg.eigvals(S @ polynomial if method in ("APIC", "PIC") else one + S @ (polynomial - one)))))
 
 
 def random_cloud(rng: np.random.Generator, D: int) -> Cloud:

@@ -3,7 +3,7 @@
 Every setting is warmed first (compiled or loaded, untimed); then whole rounds, A, B, C, A, B, C, so that a busy spell of the machine hits all alike. A timing
 is that of `run_point` without its comparison with the exact solution, set-up included; short runs are repeated within a timing until it lasts LEAST.
 Processor and wall time are both kept; on a shared machine the smallest processor time of several rounds is what says most about the method.
-Compiling is timed apart: a fresh process with an empty cache, once a method.
+Compiling is timed apart: a fresh process with an empty cache, once a kind of method.
 
 What was timed stays in OUT/timing.json, rewritten whole; an interrupted chart goes on in the round where it stopped. Timings of other source are dropped.
 """
@@ -11,12 +11,12 @@ What was timed stays in OUT/timing.json, rewritten whole; an interrupted chart g
 import json
 import math
 import os
-import resource
 import shlex
 import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ from mpm.sweep.report import Reporter
 
 LEAST = 0.02  # s that a timing lasts at least
 WRITE = 5.0  # s between two writes of the file
+ABREAST = 2  # compilations at a time
 UNCOMPILED = ("output", "time", "title", "chart", "sweep", "smoke")
 COLD = """
 import json, sys
@@ -144,28 +145,56 @@ def peer(command: str) -> list[dict]:
 
 
 def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted) -> Timings:
-    """Processor seconds of import, compilation and one run, by method, in a fresh process with an empty cache; methods of one `kind` share it."""
+    """Processor seconds of import, compilation and one run, by method, in fresh processes with empty caches; methods of one `kind` share it.
+
+    ABREAST processes at a time: what is kept is each one's own processor time, of which a neighbour on another core takes little.
+    """
     found = Timings.at(path)
     kinds = {method: kind(point) for method, point in points.items()}
-    for method, point in points.items():
-        stop(halted, found)
-        same = next((other for other in kinds if kinds[other] == kinds[method] and other in found.compiling), None)
-        if same is not None:
-            found.compiling[method] = found.compiling[same]
-            continue
-        reporter.beat({f"compiling {method}": 0.0})
-        with tempfile.TemporaryDirectory(prefix="mpm-cold-") as folder:
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            text = json.dumps(point.resolved())
-            surroundings = os.environ | {"MPM_CACHE_DIR": folder}
-            done = subprocess.run([sys.executable, "-c", COLD], input=text, text=True, capture_output=True, check=False, env=surroundings)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if done.returncode == 0:
-            found.compiling[method] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-            found.write()
-        else:
-            reporter.note(f"{method}: compiling apart failed: {(done.stderr.strip().splitlines() or ['no word'])[-1][:200]}")
+    known = {kinds[method]: seconds for method, seconds in found.compiling.items() if method in kinds}
+    due: dict[str, str] = {}
+    for method, one in kinds.items():
+        if one not in known:
+            due.setdefault(one, method)
+    with ThreadPoolExecutor(ABREAST) as pool:
+        running = {pool.submit(cold, points[method], halted): one for one, method in due.items()}
+        for future in as_completed(running):
+            seconds, said = future.result()
+            one = running[future]
+            reporter.beat({f"compiling {due[one]}": 0.0})
+            if seconds is not None:
+                found.compiling[due[one]] = known[one] = seconds
+                found.write()
+            elif said:
+                reporter.note(f"{due[one]}: compiling apart failed: {said}")
+    stop(halted, found)
+    found.compiling |= {method: known[one] for method, one in kinds.items() if one in known}
+    found.write()
     return found
+
+
+def cold(point: Any, halted) -> tuple[float | None, str]:
+    """(processor seconds of one run in a fresh process with an empty cache, ""), or (None, what went wrong); (None, "") where it was asked to stop."""
+    if halted():
+        return None, ""
+    with tempfile.TemporaryDirectory(prefix="mpm-cold-") as folder, tempfile.TemporaryFile() as said:
+        surroundings = os.environ | {"MPM_CACHE_DIR": folder}
+        started = subprocess.Popen([sys.executable, "-c", COLD], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said, env=surroundings)
+        started.stdin.write(json.dumps(point.resolved()).encode())
+        started.stdin.close()
+        while True:  # wait4 tells this child's own time, which the sum over all children could not
+            child, status, used = os.wait4(started.pid, os.WNOHANG)
+            if child:
+                break
+            if halted():
+                started.kill()
+            time.sleep(0.05)
+        started.returncode = os.waitstatus_to_exitcode(status)
+        if started.returncode == 0:
+            return used.ru_utime + used.ru_stime, ""
+        said.seek(0)
+        lines = said.read().decode(errors="replace").strip().splitlines()
+        return None, "" if halted() else (lines or ["no word"])[-1][:200]
 
 
 def kind(experiment: Any) -> str:

@@ -18,7 +18,7 @@ def test_motion_first_then_what_is_left(scenes):
     found = listing(mpm.load(config))
     errors = {one["name"]: one["error"] for one in found["models"]}
     assert 0 < errors["rigid"] < errors["rigid + lumped"] < 0.01
-    assert next(one["saving"] for one in found["models"] if one["name"] == "rigid") > 5  # by the costs of mpm.costs, where a particle-step takes 0.12 µs
+    assert next(one["saving"] for one in found["models"] if one["name"] == "rigid") > 10
 
 
 def test_a_pilot_measures_what_the_estimate_guesses(scenes):
