@@ -89,6 +89,7 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
 def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
     """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
     x, past = body.particles.x, 0.0 if opening else dt
+    lay_down(x, first, count, chunk.place)
     if opening:
         fetch(body.particles, first, chunk, count)
     else:
@@ -173,10 +174,9 @@ def to_velocity(nodes, D, shape, box, gravity, dt):
 
 @kernel(inline=True)
 def move(space, x, chunk, first, count, dt, report):
-    """x += dt sum w v_i+. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
+    """x += dt sum w v_i+, also in chunk.place. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
     shape, inside, D, n, real = extents(space), room(space.basis), x.shape[1], chunk.m.shape[0], x.dtype.type
     place, step, speed, good = chunk.place, splat8(real(dt)), splat8(real(0)), splat8(real(1))
-    lay_down(x, first, count, place)
     for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
         for c in range(D):
             poke(chunk.v, c * n + p, 0.0)

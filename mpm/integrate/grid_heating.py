@@ -20,7 +20,7 @@ from mpm.integrate.strain import HEATED
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
 from mpm.state import Axisymmetric, GridHeating, Heating, Line, NoHeating, Plane, Volume
-from mpm.transfer import CHUNK, gather, gather_scalar, scatter_scalar
+from mpm.transfer import CHUNK, gather, gather_scalar, lay_down, scatter_scalar
 
 
 @role
@@ -80,6 +80,7 @@ def _(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
     at, load, zero = np.zeros(CHUNK), np.zeros(CHUNK), np.zeros((D, CHUNK))
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
+        lay_down(x, first, count, chunk.place)
         gather(space, gradient, x, first, chunk, count, nodes)
         for p in range(count):
             i = first + p

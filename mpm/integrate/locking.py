@@ -19,7 +19,7 @@ from mpm.integrate.strain import increment3
 from mpm.jit import kernel, role
 from mpm.state import Average, Axisymmetric, Line, NoAverage, Plane, Volume
 from mpm.tensors import dilation1, dilation2, dilation3
-from mpm.transfer import CHUNK, gather, gather_scalar, scatter_scalar
+from mpm.transfer import CHUNK, gather, gather_scalar, lay_down, scatter_scalar
 
 
 @role
@@ -103,6 +103,7 @@ def _(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     at, grow, zero = np.zeros(CHUNK), np.zeros(CHUNK), np.zeros((D, CHUNK))
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
+        lay_down(x, first, count, chunk.place)
         gather(space, gradient, x, first, chunk, count, nodes)
         for p in range(count):
             at[p] = V0[first + p] * J[first + p]

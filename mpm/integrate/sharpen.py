@@ -14,7 +14,7 @@ from mpm.integrate.heat_step import over_nodes, reach, scatter_heat
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
 from mpm.state import Isothermal, Thermal
-from mpm.transfer import CHUNK, Apic, Flip, Xpic, gather, gather_scalar, scatter, scatter_scalar
+from mpm.transfer import CHUNK, Apic, Flip, Xpic, gather, gather_scalar, lay_down, scatter, scatter_scalar
 
 FIELDS = 4  # scratch fields of `sharpened`
 
@@ -79,6 +79,7 @@ def pass_body(space, gradient, x, m, chunk, field, spare, box):
     """There and back, one body."""
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
+        lay_down(x, first, count, chunk.place)
         gather(space, gradient, x, first, chunk, count, field)
         for p in range(count):
             chunk.m[p] = m[first + p]

@@ -24,7 +24,7 @@ from mpm.integrate.locking import any_averages
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
-from mpm.transfer import CHUNK, deliver, lay_down, new_chunk, spread, uses_basis_gradient, wants_change
+from mpm.transfer import CHUNK, deliver, new_chunk, spread, uses_basis_gradient, wants_change
 
 SLACK = 1e-3  # cells: positions are rounded otherwise in lanes
 STILL, LATE = 0, 1
@@ -91,8 +91,6 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
             return
         if moment.last:
             continue
-        if starts:
-            lay_down(x, first, count, chunk.place)
         if moment.late or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
             late[first] = STILL
             spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)

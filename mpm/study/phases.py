@@ -22,7 +22,7 @@ from mpm.runner import run_point
 from mpm.scene.build import build
 from mpm.simulation import Clock, advance_block, warm_bodies, work_arrays
 from mpm.sweep.cases import plan
-from mpm.transfer import CHUNK, collect, new_chunk, spread
+from mpm.transfer import CHUNK, collect, lay_down, new_chunk, spread
 
 ROUNDS, LEAST = 5, 0.05  # timings of a thing, and seconds that one lasts at least
 WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansion": ("expansion", "heating"), "heating": ("heating",)}
@@ -77,6 +77,7 @@ def gathers(scheme, space, gradient, body, chunk, nodes, force, change, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
+            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
             collect(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, change)
 
 
@@ -85,6 +86,7 @@ def moves(space, body, chunk, dt, report, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
+            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
             move(space, x, chunk, first, min(CHUNK, x.shape[0] - first), dt, report)
 
 
@@ -101,6 +103,7 @@ def spreads(scheme, space, gradient, body, chunk, nodes, force, box, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
+            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
             spread(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, box)
 
 

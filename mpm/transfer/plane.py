@@ -7,7 +7,8 @@ from mpm.basis import stencil
 from mpm.jit import role
 from mpm.state import Axisymmetric, Cubic, Linear, Plane, Quadratic
 from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
-from mpm.transfer.rows import gather_plane, place_chunk, scatter_plane
+from mpm.transfer.rows import gather_plane, scatter_plane
+from mpm.transfer.stencils import stencil_chunk
 
 
 @scatter.register(Plane)
@@ -24,7 +25,7 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 @scatter_by_basis.register(Quadratic)
 def _(basis, space, gradient, x, first, chunk, count, nodes, box):
-    place_chunk(space, x, first, chunk, count, box)
+    stencil_chunk(space, chunk.place, count, chunk.s, box)
     scatter_plane(space, gradient, chunk, count, nodes)
 
 
@@ -70,7 +71,7 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 @gather_by_basis.register(Quadratic)
 def _(basis, space, gradient, x, first, chunk, count, nodes):
-    place_chunk(space, x, first, chunk, count, chunk.reach)
+    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_plane(space, gradient, chunk, count, nodes)
 
 

@@ -44,13 +44,13 @@ class Chunk(NamedTuple):
 
 @role(inline=True)
 def scatter(space, gradient, x, first, chunk, count, nodes, box):
-    """Add `count` particles from `first` on to `nodes`; `box` (D, 2) grows to the nodes touched."""
+    """Add `count` particles from `first`, whose positions `lay_down` put into the chunk, on to `nodes`; `box` (D, 2) grows to the nodes touched."""
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 
 @role(inline=True)
 def gather(space, gradient, x, first, chunk, count, nodes):
-    """Fill v, C, L of the chunk from the nodal velocities."""
+    """Fill v, C, L of the chunk from the nodal velocities, at the positions that `lay_down` put into it."""
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 

@@ -8,15 +8,8 @@ The rows of a stencil stay in registers while consecutive particles share them.
 from mpm.jit import kernel
 from mpm.lanes import fma, high, join, load4, load8, low, splat4, splat8, store
 from mpm.transfer.packing import pack_plane, pack_volume, unpack_plane, unpack_volume
-from mpm.transfer.roles import lay_down, uses_basis_gradient
-from mpm.transfer.stencils import FIRST, B, G, W, stencil_chunk
-
-
-@kernel(inline=True)
-def place_chunk(space, x, first, chunk, count, box):
-    """Positions of the chunk's particles and their stencils."""
-    lay_down(x, first, count, chunk.place)
-    stencil_chunk(space, chunk.place, count, chunk.s, box)
+from mpm.transfer.roles import uses_basis_gradient
+from mpm.transfer.stencils import FIRST, B, G, W
 
 
 @kernel(inline=True)

@@ -4,7 +4,8 @@ from mpm.basis import stencil
 from mpm.jit import role
 from mpm.state import Cubic, Linear, Quadratic, Volume
 from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
-from mpm.transfer.rows import gather_volume, place_chunk, scatter_volume
+from mpm.transfer.rows import gather_volume, scatter_volume
+from mpm.transfer.stencils import stencil_chunk
 
 
 @scatter.register(Volume)
@@ -20,7 +21,7 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 @scatter_by_basis.register(Quadratic)
 def _(basis, space, gradient, x, first, chunk, count, nodes, box):
-    place_chunk(space, x, first, chunk, count, box)
+    stencil_chunk(space, chunk.place, count, chunk.s, box)
     scatter_volume(space, gradient, chunk, count, nodes)
 
 
@@ -76,7 +77,7 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 @gather_by_basis.register(Quadratic)
 def _(basis, space, gradient, x, first, chunk, count, nodes):
-    place_chunk(space, x, first, chunk, count, chunk.reach)
+    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_volume(space, gradient, chunk, count, nodes)
 
 

@@ -8,7 +8,7 @@ import pytest
 from mpm.boundary import KINDS, directions, extents
 from mpm.integrate.locking import average, grown, relax
 from mpm.state import PAD, Average, Axisymmetric, Body, Isothermal, Line, NoExchange, NoExpansion, NoHeating, Particles, Plane, Volume
-from mpm.transfer import Mls, columns, gather, new_chunk
+from mpm.transfer import Mls, columns, gather, lay_down, new_chunk
 
 H, N, DT = 0.25, 30, 0.1
 SPACES = [Line(H, 12), Plane(H, 9, 9), Axisymmetric(H, 9, 9), Volume(H, 8, 8, 8)]
@@ -37,6 +37,7 @@ def relaxed(space, field):
     x, D = body.particles.x, directions(space)
     chunk = new_chunk(D, x, True, False)
     average(body.locking, space, Mls(), body, chunk, nodes, box, np.full((3, 2), KINDS["contact"]), DT)
+    lay_down(x, 0, N, chunk.place)
     gather(space, Mls(), x, 0, chunk, N, nodes)
     before, own = chunk.L[..., :N].copy(), np.array([grown(space, x, p, chunk, p, DT) for p in range(N)])
     relax(body.locking, space, x, 0, chunk, N, DT)

@@ -7,7 +7,23 @@ import pytest
 
 from mpm.boundary import directions, extents
 from mpm.state import PAD, Axisymmetric, Line, Plane, Volume
-from mpm.transfer import Apic, Bspline, Chunk, Flip, Mls, collect, columns, gather, gather_scalar, new_chunk, scatter, scatter_scalar, spread, wants_change
+from mpm.transfer import (
+    Apic,
+    Bspline,
+    Chunk,
+    Flip,
+    Mls,
+    collect,
+    columns,
+    gather,
+    gather_scalar,
+    lay_down,
+    new_chunk,
+    scatter,
+    scatter_scalar,
+    spread,
+    wants_change,
+)
 
 H = 0.3
 SPACES = [Line(H, 12), Plane(H, 11, 12), Axisymmetric(H, 11, 12), Volume(H, 10, 11, 12)]
@@ -47,6 +63,7 @@ def empty_box(D):
 def scattered(space, gradient, x, chunk):
     D = directions(space)
     nodes = np.zeros((math.prod(extents(space)), columns(D)))
+    lay_down(x, 0, N, chunk.place)
     scatter(space, gradient, x, 0, chunk, N, nodes, empty_box(D))
     return nodes
 
@@ -70,6 +87,7 @@ def test_gather_is_exact_for_linear_fields(space, gradient):
     nodes = np.zeros((math.prod(extents(space)), columns(D)))
     nodes[:, :D] = constant + nodes_at(space) @ slope.T
     chunk = chunk_of(D)
+    lay_down(x, 0, N, chunk.place)
     gather(space, gradient, x, 0, chunk, N, nodes)
     assert np.allclose(chunk.v[:, :N].T, constant + x @ slope.T, atol=1e-13)
     for gathered in (chunk.C, chunk.L):
@@ -101,6 +119,7 @@ def test_gather_is_the_transpose_of_scatter(space, gradient):
     chunk.G[..., :N] = np.random.default_rng(4).standard_normal((D, D, N)) if isinstance(gradient, Bspline) else 0.0
     nodes = scattered(space, gradient, x, chunk)
     u = np.random.default_rng(5).standard_normal(nodes.shape)
+    lay_down(x, 0, N, chunk.place)
     gather(space, gradient, x, 0, chunk, N, u)
     expected = np.sum(chunk.a * chunk.v) + H * H / 4 * np.sum(chunk.A * chunk.C) + np.sum(chunk.G * chunk.L)
     assert np.sum(nodes[:, :D] * u[:, :D]) == pytest.approx(expected, rel=1e-11)
@@ -113,6 +132,7 @@ def test_one_scalar_field_as_vectors(space):
     chunk.G[..., :N] = np.random.default_rng(4).standard_normal((D, D, N))
     nodes = scattered(space, Bspline(), x, chunk)
     u = np.random.default_rng(5).standard_normal(nodes.shape)
+    lay_down(x, 0, N, chunk.place)
     gather(space, Bspline(), x, 0, chunk, N, u)
     for c in range(D):
         one = np.zeros(len(nodes))
@@ -127,6 +147,7 @@ def test_one_scalar_field_as_vectors(space):
 def test_the_box_holds_the_nodes_touched_and_no_more(space):
     D, x, chunk = directions(space), positions(space), chunk_of(directions(space))
     nodes, box = np.zeros((math.prod(extents(space)), columns(D))), empty_box(D)
+    lay_down(x, 0, N, chunk.place)
     scatter(space, Mls(), x, 0, chunk, N, nodes, box)
     mass = nodes[:, D].reshape(extents(space)[:D])
     for axis in range(D):
@@ -146,11 +167,14 @@ def test_schemes_scatter_the_same_momentum_and_force(space, gradient, scheme):
     copy.A[:] += 0.0 if isinstance(gradient, Bspline) else copy.S
     expected = scattered(space, gradient, x, copy)
     nodes, force = np.zeros_like(expected), np.zeros_like(expected)
+    lay_down(x, 0, N, chunk.place)
     spread(scheme, space, gradient, x, 0, chunk, N, nodes, force, empty_box(D))
     assert np.allclose(nodes + force, expected, atol=1e-12)
     assert np.any(force) == wants_change(scheme)
     change = np.zeros_like(chunk.v)
+    lay_down(x, 0, N, chunk.place)
     collect(scheme, space, gradient, x, 0, chunk, N, nodes, force, change)
+    lay_down(x, 0, N, copy.place)
     gather(space, gradient, x, 0, copy, N, nodes)
     assert np.allclose(chunk.v, copy.v, atol=1e-13) and np.allclose(chunk.C, copy.C, atol=1e-12) and np.allclose(chunk.L, copy.L, atol=1e-12)
     if wants_change(scheme):
