@@ -33,7 +33,6 @@ from mpm.state import Run, Thermal
 from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
-BLOCK_SLABS = 16  # steps of a scene in slabs: every block begins with a scatter of its own
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
@@ -263,7 +262,6 @@ def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) ->
 
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
-    particles = sum(len(body.particles.m) for body in scene.bodies)
     while until - clock.time > 1e-12 * until:
         sound = guards.block(scene, clock)
         if not sound.ok:
@@ -275,7 +273,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
             return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
         left = until - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
-        dt, block = left / count, min(BLOCK_SLABS if scene.order.sliced else max(1, min(BLOCK, BLOCK_WORK // particles)), count)
+        dt, block = left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count)
         binding = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
         if count == 1 and left < step * (1 - 1e-9):
             binding = "heat pace or output"

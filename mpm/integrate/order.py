@@ -181,6 +181,11 @@ class Order:
         """Whether the scene is in slabs."""
         return self.starts.shape[1] > 0
 
+    def block(self, most: int, work: int) -> int:
+        """Steps of a block of about `work` particle-steps. In slabs they are longer: every block begins with a scatter of its own, and Python hears signals."""
+        particles = sum(len(body.particles.m) for body in self.bodies)
+        return max(4, min(most // 2, 5 * work // particles)) if self.sliced else max(1, min(most, work // particles))
+
     def take(self, b: int, order: np.ndarray) -> None:
         """Put the particles of a body in that order of the present one."""
         if np.array_equal(order, np.arange(len(order))):

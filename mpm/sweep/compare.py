@@ -10,7 +10,7 @@ import numpy as np
 from mpm.sweep.store import Refused
 
 NOT_RESULTS = ("wall_time", "attempts")
-NOT_ATTRIBUTES = ("started", "finished", "facts", "machine", "versions", "git_revision", "source_hash", "_NCProperties")
+NOT_ATTRIBUTES = ("started", "finished", "facts", "machine", "threads", "versions", "git_revision", "source_hash", "_NCProperties")
 
 
 def dataset_of(place: Path) -> Path:
