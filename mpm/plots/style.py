@@ -80,7 +80,7 @@ def figure(title: str, height: float) -> Figure:
 
 def ordered(count: int) -> list[Any]:
     """Colours that keep an order: viridis without its palest end."""
-    return [matplotlib.colormaps["viridis"](value) for value in np.linspace(0.0, 0.84, count)] if count > 1 else [OKABE_ITO[0]]
+    return [tuple(map(float, colour)) for colour in matplotlib.colormaps["viridis"](np.linspace(0.0, 0.84, count))] if count > 1 else [OKABE_ITO[0]]
 
 
 def legend_below(ax: Any, rows: list[list[Any]]) -> None:

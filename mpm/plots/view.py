@@ -52,7 +52,10 @@ class Axis:
 
     def colours(self) -> list[Any]:
         """A colour a value: in order for numbers, apart for kinds."""
-        return [OKABE_ITO[i % len(OKABE_ITO)] for i in range(self.size)] if self.category else [ordered(self.size)[rank] for rank in self.ranks()]
+        if self.category:
+            return [OKABE_ITO[i % len(OKABE_ITO)] for i in range(self.size)]
+        order = ordered(self.size)
+        return [order[rank] for rank in self.ranks()]
 
     def ranks(self) -> np.ndarray:
         """Place of each value in ascending order."""

@@ -109,6 +109,8 @@ def run_engine(supervisor: Engine, options: Options) -> None:
     from mpm.sweep.processes import Processes
 
     with signals(supervisor.signal):
+        if not supervisor.any_can_run():
+            return
         if options.jobs == 0:
             supervisor.run(Serial(options.runner, supervisor.heed))
             return

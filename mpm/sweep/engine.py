@@ -145,9 +145,7 @@ class Engine:
             size = min(size, self.options.max_failures - self.failures)  # none runs after the last failure that is allowed
         first = self.points.cases[self.due[0]].experiment
         need = self.room.need(first)  # of a batch, the first speaks for all: they are tiny
-        if refusal := self.room.refusal(need):
-            self.attempts[self.due[0]] += 1
-            self.record(self.due.popleft(), FAILED, refusal, MEMORY, ADVICE)
+        if self.refused(need):
             return True
         if not self.room.fits(need) or not self.on_disk(size, first):
             return False
@@ -162,6 +160,19 @@ class Engine:
         self.room.given[task.id] = need
         executor.submit(task)
         return True
+
+    def refused(self, need: int) -> bool:
+        """Whether the next point needs more memory than there is; it has its record then."""
+        if refusal := self.room.refusal(need):
+            self.attempts[self.due[0]] += 1
+            self.record(self.due.popleft(), FAILED, refusal, MEMORY, ADVICE)
+        return bool(refusal)
+
+    def any_can_run(self) -> bool:
+        """Whether anything is left to start workers for, once the points at the front that need too much memory are refused."""
+        while self.due and not self.stopped and self.refused(self.room.need(self.points.cases[self.due[0]].experiment)):
+            pass
+        return bool(self.due) and not self.stopped
 
     def on_disk(self, size: int, experiment: Any) -> bool:
         """Whether the disk has room for so many points more; where nothing runs that could end, the sweep stops."""

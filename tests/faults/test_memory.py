@@ -69,6 +69,12 @@ def test_what_wants_too_much_memory_is_refused_or_ended_alone(tmp_path, marks, t
     table("a point over the memory limit by its estimate; creeping over it; asking for it at once", said)
 
 
+def test_where_nothing_can_run_no_worker_starts(tmp_path, marks, monkeypatch):
+    monkeypatch.setattr("mpm.sweep.processes.Child", None)
+    result = go(config([0.2, 0.5]), tmp_path / "out", jobs=2, memory=1e6)
+    assert result.exit_code == 4 and result.counts["failed"] == 2 and not marks()
+
+
 @pytest.mark.slow
 def test_the_estimate_is_within_a_fifth(table):
     ratios = {f"{Path(name).stem} {'' if not settings else settings}": ratio(name, settings) for name, settings in LARGE}

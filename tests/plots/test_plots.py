@@ -1,5 +1,7 @@
 """Figures: files are made, axes say what and in which unit, failed points are marked with their reason, nothing raises for NaN."""
 
+import time
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -109,6 +111,15 @@ def test_three_axes_give_a_panel_a_value_of_the_third(tree):
     axes = {"cell": [1e-3, 2e-3], "beta": [5.0, 10, 20, 40], "kappa": [0.2, 0.3, 0.4]}
     fig = overview(tree(axes, {"time_to_centre_95_degC": np.arange(24.0).reshape(shape) + 1}))
     assert [ax.get_title(loc="left") for ax in panels(fig)] == ["cell = 1 mm", "cell = 2 mm"]
+
+
+def test_many_points_are_drawn_at_once(tree, tmp_path):
+    """Colours were once worked out anew for each point: 3000 of them took minutes, of processor time."""
+    kappa = np.linspace(0.1, 1.0, 3000)
+    whole = tree({"kappa": kappa}, {"temperature_mean": 300 + kappa}, {"temperature_mean": 300 + kappa[:, None] * np.arange(5)})
+    began = time.process_time()
+    overview(whole, tmp_path / "many.png")
+    assert time.process_time() - began < 10
 
 
 def test_lines_beyond_a_legend_get_a_colour_bar(tree):
