@@ -1,0 +1,140 @@
+"""Our side of the rows of mpm.study.speed that are not the thrown cube: `python -m mpm.study.speed_models WHAT`, one JSON line each.
+
+whole [f32]   ns a particle-step of a sheared cube that flows everywhere (Hencky, radial return, heat through its faces), with physics taken away in turn
+disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the answer, geometry and assembly included
+loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 780 s of baking with its latent front
+points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
+Run them pinned to one core of an idle machine.
+"""
+
+import json
+import statistics
+import sys
+import time
+
+import numpy as np
+
+from mpm.config import load
+from mpm.runner import run_point, run_points
+
+ROUNDS = 5
+SHEAR = 2.0  # 1/s
+ERRORS = (3e-4, 5e-5)
+BAKING = {"kappa": (0.2, 0.28, 0.35, 0.42, 0.5)}
+HEAT = {"fourier": {"kappa": 0.4, "alpha": 2000}}
+FLOW = {"ellipse": {"M": 20, "p0": 2, "eta": 10}}
+POINTS, POINT_STEPS = 1000, 2000
+
+
+def cube(flow: bool, heat: bool, dtype: str) -> dict:
+    """A cube of 100 000 particles on a grid of 64^3."""
+    dough = {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}} | ({"flow": FLOW} if flow else {}) | ({"heat": HEAT} if heat else {})
+    body = {"shape": {"box": {"lower": [0.3, 0.3, 0.3], "upper": [0.663, 0.663, 0.663]}}, "material": "dough"} | ({"temperature": 300} if heat else {})
+    faces = [{"of": "cube", "convection": {"beta": 500, "outside": 363}}] if heat else []
+    return {
+        "title": "Sheared cube", "grid": {"dimension": 3, "size": [1, 1, 1], "cell": 1 / 64}, "bodies": {"cube": body}, "materials": {"dough": dough},
+        "surfaces": faces, "time": {"end": 1}, "method": {"precision": {"f32": "float32", "f64": "float64"}[dtype]},
+    }  # fmt: skip
+
+
+def sheared(flow: bool, heat: bool, dtype: str):
+    """The cube in simple shear, after enough steps that all of it flows, if it may."""
+    from mpm.study.phases import Bench
+
+    found = Bench(load(cube(flow, heat, dtype)))
+    particles = found.scene.bodies[0].particles
+    particles.v[:, 0], particles.C[:, 0, 1] = SHEAR * (particles.x[:, 1] - particles.x[:, 1].mean()), SHEAR
+    for _ in range(60):
+        found.steps()
+    return found
+
+
+def flowing(bench) -> float:
+    """Share of particles on or outside the ellipse."""
+    B = bench.scene.bodies[0].particles.B.astype(float)
+    mu = 1e5 / 2.6
+    deviator = 0.5 * (B[:, :3] - B[:, :3].mean(1, keepdims=True))
+    q = np.sqrt(6.0) * mu * np.sqrt((deviator**2).sum(1) + 0.5 * (B[:, 3:] ** 2).sum(1))
+    return float((q > 0.999 * FLOW["ellipse"]["M"]).mean())
+
+
+def whole(dtype: str = "f64") -> dict:
+    """Medians of rounds in turn; heat steps come at their own pace, `every` so many mechanical steps."""
+    made = {name: sheared(flow, heat, dtype) for name, flow, heat in (("elastic", False, False), ("heat", False, True), ("whole", True, True))}
+    times: dict[str, list[float]] = {name: [] for name in made}
+    for _ in range(ROUNDS):
+        for name, bench in made.items():
+            times[name].append(bench.step_ns())
+    found = {f"{name}_ns": statistics.median(one) for name, one in times.items()}
+    bench = made["whole"]
+    heat_step = statistics.median(timed(bench.heat) for _ in range(ROUNDS)) * 1e9 / bench.particles
+    every = bench.now.pace / (bench.now.step() * bench.scene.safety)
+    return found | {"heat_step_ns": heat_step, "every": every, "flowing": flowing(bench), "particles": bench.particles, "dtype": dtype}
+
+
+def timed(call) -> float:
+    """Seconds of a call."""
+    began = time.perf_counter()
+    call()
+    return time.perf_counter() - began
+
+
+def disc_config(cell: float, tolerance: float) -> dict:
+    """A disc of radius 1 at Bi = 10, as peer_fem.py has it."""
+    return {
+        "title": "Robin disc", "grid": {"dimension": 2, "size": [3, 3], "cell": cell},
+        "bodies": {"disc": {"shape": {"ball": {"centre": [1.5, 1.5], "radius": 1}}, "temperature": 301, "material": "unit"}},
+        "materials": {"unit": {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}},
+        "surfaces": [{"of": "disc", "convection": {"beta": 10, "outside": 300}}], "time": {"end": 0.2}, "output": {"every": 0.2},
+        "method": {"offset": [0.3, 0.2], "rigid": {"implicit": {"order": 4, "tolerance": tolerance}}}, "exact": {"robin_cylinder": {}},
+    }  # fmt: skip
+
+
+def disc() -> dict:
+    """The cheapest of a few settings at each error: {error: [seconds, error, cell, tolerance]}."""
+    from mpm.rigid.geometry import geometry
+
+    found: dict[str, list[float]] = {}
+    for cell in (0.75, 0.5, 0.375, 0.3, 0.25, 0.2, 0.15):
+        for tolerance in (1e-3, 1e-4, 1e-5, 1e-6):
+            experiment = load(disc_config(cell, tolerance))
+            error = run_point(experiment).finals["error_l2"]
+            seconds = []
+            for _ in range(ROUNDS):
+                geometry.cache_clear()
+                seconds.append(timed(lambda experiment=experiment: run_point(experiment, compare=False)))
+            for wanted in ERRORS:
+                if error <= wanted and min(seconds) < found.get(f"{wanted:g}", [np.inf])[0]:
+                    found[f"{wanted:g}"] = [min(seconds), error, cell, tolerance]
+    return found
+
+
+def loaf() -> dict:
+    """Median over points that differ in kappa, one after another in a process, as a worker of a sweep has them."""
+    from pathlib import Path
+
+    data = load(Path(__file__).parents[2] / "configs" / "scenes" / "loaf.yaml").resolved() | {"sweep": None}
+    seconds = []
+    for kappa in (*BAKING["kappa"][:1], *BAKING["kappa"]):
+        data["materials"]["dough"]["heat"]["fourier"]["kappa"] = kappa
+        experiment = load(data)
+        seconds.append(timed(lambda experiment=experiment: run_point(experiment)))
+    return {"seconds": statistics.median(seconds[1:]), "first": seconds[0]}
+
+
+def points() -> dict:
+    """A batch of relaxations that flow at every step."""
+    data = {
+        "title": "Relaxation", "grid": {"dimension": 0}, "loading": [{}], "time": {"end": 2, "step": 2 / POINT_STEPS}, "output": {"every": 2},
+        "bodies": {"body": {"shape": {"point": {"strain": {"xx": -2.33e-3, "yy": -1.33e-3, "zz": -1.33e-3}}}, "material": "solid"}},
+        "materials": {"solid": {"density": 1000, "elastic": {"hencky": {"lam": 2.2e5, "mu": 1.7e5}}, "flow": {"ellipse": {"M": 1000, "p0": 0.8, "eta": 3e5}}}},
+    }  # fmt: skip
+    base = load(data)
+    run_points([base] * POINTS)
+    seconds = min(timed(lambda: run_points([base] * POINTS)) for _ in range(ROUNDS))
+    return {"steps_a_second": POINTS * POINT_STEPS / seconds}
+
+
+if __name__ == "__main__":
+    what, *more = sys.argv[1:]
+    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "points": points}[what](*more)))
