@@ -127,7 +127,55 @@ def grown() -> str:
     return "ns a particle-step, float64, at 1e4, 1e5, 1e6 particles: " + ", ".join(f"{1e6 * one['med_ms'] / one['N']:.1f}" for one in found)
 
 
-FIGURES = {"random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown}
+def model(*what: str) -> dict:
+    """A line of mpm.study.speed_models, on one core."""
+    return line([sys.executable, "-m", "mpm.study.speed_models", *what])
+
+
+def whole_step() -> str:
+    """What heat and flow add to a step in three dimensions, and the whole of it."""
+    said = []
+    for dtype, name in (("f64", "float64"), ("f32", "float32")):
+        one = model("whole", dtype)
+        heat = 100 * (one["heat_ns"] / one["elastic_ns"] - 1)
+        said.append(
+            f"{name}: elastic {one['elastic_ns']:.0f} ns, heat on {one['heat_ns']:.0f} ns (+{heat:.0f} %), "
+            f"with flow at {100 * one['flowing']:.0f} % of the particles {one['whole_ns']:.0f} ns; "
+            f"a heat step, every {one['every']:.2g} such steps here, {one['heat_step_ns']:.0f} ns"
+        )
+    return "3-D thermo-viscoplastic step (Hencky, radial return, heat), a particle: " + "; ".join(said)
+
+
+def smaller_models() -> str:
+    """Heat of bodies that do not move, and material points."""
+    baked, points = model("loaf"), model("points")
+    rate = f"0-D: {points['steps_a_second']:.2g} steps a second with the radial map"
+    return f"the loaf, heat only, 780 s, a point of a warm sweep: {baked['seconds']:.3f} s; {rate}"
+
+
+def fitted(peers: Path | None, python: str | None) -> str:
+    """The Robin disc at equal error beside fitted finite elements, set-up included: the cheapest setting of each."""
+    found = {}
+    if peers is not None:
+        for steps in (4, 6, 8):
+            command = [python, str(peers / "peer_fem.py"), "--order", "2", "--refine", "1", "2", "3", "4", "--steps", str(steps)]
+            done = subprocess.run(pinned(0, command), capture_output=True, text=True, check=True, env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
+            for text in done.stdout.splitlines():
+                one = json.loads(text)
+                for wanted in (3e-4, 5e-5):
+                    if one["rms"] <= wanted:
+                        found[wanted] = min(found.get(wanted, math.inf), one["seconds"])
+    said = []
+    for wanted, (seconds, error, cell, tolerance) in sorted(((float(key), value) for key, value in model("disc").items()), reverse=True):
+        beside = f", scikit-fem P2 {1e3 * found[wanted]:.1f} ms: {found[wanted] / seconds:.1f} x" if wanted in found else ""
+        said.append(f"{wanted:g} in {1e3 * seconds:.1f} ms (error {error:.1e}, cell {cell:g}, tolerance {tolerance:g}){beside}")
+    return "Robin disc, from config to answer: " + "; ".join(said)
+
+
+FIGURES = {
+    "random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown, "whole step": whole_step,
+    "smaller models": smaller_models,
+}  # fmt: skip
 
 
 def main() -> None:
@@ -135,7 +183,7 @@ def main() -> None:
     parser.add_argument("--peers", type=Path)
     parser.add_argument("--python")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--only", default="", help="rows whose name holds this; figures too: " + ", ".join(FIGURES))
+    parser.add_argument("--only", default="", help="rows whose name holds this; figures too: " + ", ".join([*FIGURES, "disc"]))
     given = parser.parse_args()
     about = machine()
     print(
@@ -151,6 +199,8 @@ def main() -> None:
     for name, figure in FIGURES.items():
         if given.only in name:
             print(f"- {figure()}", flush=True)
+    if given.only in "disc":
+        print(f"- {fitted(given.peers, given.python)}", flush=True)
 
 
 if __name__ == "__main__":
