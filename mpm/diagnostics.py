@@ -9,7 +9,7 @@ from mpm.boundary import directions, extents
 from mpm.jit import kernel, role
 from mpm.materials import energy, enthalpy, stress, value, warmed
 from mpm.materials.laws import Constant
-from mpm.state import Axisymmetric, Expansion, Latched, Line, Plane, Softening, Thermal, Volume
+from mpm.state import Axisymmetric, Expansion, Latched, Line, NoExchange, Plane, Softening, Thermal, Volume
 from mpm.tensors import eigen2, eigen3
 from mpm.transfer import scatter_scalar
 
@@ -125,3 +125,12 @@ def nodal(space, x, weights, nodes):
 def grid_shape(space) -> tuple[int, ...]:
     """Nodes by direction, as many as there are directions."""
     return extents(space)[: directions(space)]
+
+
+def exchanging_area(body) -> float:
+    """Present area of the pieces that exchange heat: J |F^-T A| (Nanson) [m^(D-1), axisymmetric m^2 per radian]."""
+    if isinstance(body.surface, NoExchange):
+        return 0.0
+    owner = body.surface.owner
+    normal = np.einsum("sji,sj->si", np.linalg.inv(body.surface.F.astype(float))[owner], body.surface.area)
+    return float(body.particles.J[owner].astype(float) @ np.linalg.norm(normal, axis=1))

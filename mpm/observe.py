@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import extents
-from mpm.diagnostics import grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
+from mpm.diagnostics import exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
 from mpm.error import Errors
 from mpm.memory import rows
 from mpm.outcome import Outcome
@@ -30,6 +30,13 @@ class Watch:
     grid: tuple[str, ...] = ()
     particles: tuple[str, ...] = ()
     exact: Any = None
+
+
+def radius_holding(share: float, r, V) -> float:
+    """Within which `share` of the volume lies: half of a particle's counts at its own radius."""
+    order = np.argsort(r)
+    inside = np.cumsum(V[order]) - 0.5 * V[order]
+    return float(np.interp(share * np.sum(V), inside, r[order]))
 
 
 def axis_names(space) -> tuple[str, ...]:
@@ -129,6 +136,9 @@ class Recorder:
         yield "velocity_max", math.sqrt(np.max(np.sum(v * v, axis=1)))
         yield "J_min", np.min(J)
         yield "J_max", np.max(J)
+        if isinstance(scene.space, Axisymmetric):
+            for share in (95, 99):
+                yield f"radius_{share}", radius_holding(0.01 * share, x[:, 0], V)
         motion = sum(kinetic(scene.space, body.particles) for body in scene.bodies)
         elastic, pressure, strain = 0.0, 0.0, 0.0
         for body in scene.bodies:
@@ -155,6 +165,7 @@ class Recorder:
         yield "temperature_min", np.min(theta)
         yield "temperature_max", np.max(theta)
         yield "heat_total", total
+        yield "area_exchanging", sum(exchanging_area(body) for body in self.warm)
         yield "heat_exchanged", clock.exchanged
         yield "heat_ledger", total - clock.exchanged - clock.local
         for name in self.places:

@@ -24,6 +24,7 @@ from mpm.integrate.order import Order
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
+from mpm.integrate.tears import tear
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.lanes import aligned
 from mpm.memory import arrays, fill
@@ -64,6 +65,7 @@ class Scene:
     safety: float
     heat_step: float | None
     surroundings: tuple = ()  # mpm.integrate.surroundings.Surroundings or None, by body
+    seams: tuple = ()  # mpm.integrate.tears.Seams or None, by body
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
     watch: Any = None  # what to record: mpm.observe.Watch
@@ -202,6 +204,9 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     if not now.heat:
         return outcome(COMPLETED)
+    for body, seams in zip(scene.bodies, scene.seams, strict=False):
+        if seams is not None:
+            tear(scene.space, body, seams)
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=False) if one is not None]
     for body, one in around:
         one.write(scene.space, body, clock.time, dt)

@@ -151,6 +151,8 @@ class Method(Model):
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")
     heat_step: TimeOrAuto = doc("auto", description="time step of heat in moving bodies")
-    fracture: Annotated[Literal["warn", "fail"], Choice()] = doc("warn", description="particles that come apart by more than two cells: run on, or end")
+    fracture: Annotated[Literal["warn", "fail", "surface"], Choice()] = doc(
+        "warn", description="particles that come apart by more than two cells: run on, end, or run on and let the faces that opened exchange heat"
+    )
     offset: tuple[Offset, ...] = doc((), description="shift of bodies and probes against the grid lines, in cells, one a direction; zero unless given")
     rigid: one_of("integrator", *RIGID) = doc(AutoHeat(), description="heat in rigid bodies")

@@ -9,6 +9,7 @@ from mpm.config.problems import near
 from mpm.config.rules_scene import heats, moves, plain_names, vector
 
 MOST_SAMPLES = 10**6
+OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff")
 
 
 def clock(experiment: Any) -> Iterator[Finding]:
@@ -74,9 +75,9 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
             given=name,
         )
     family = name.split(".", maxsplit=1)[0]
-    if family in ("temperature", "heat", "time_to") and not hot:
+    if family in ("temperature", "heat", "time_to", "area") and not hot:
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
-    if family in ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "pressure", "strain", "stress", "kirchhoff") and not moving:
+    if family in OF_MOTION and not moving:
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)
 
 

@@ -91,7 +91,7 @@ class Surroundings:
         F = surface.F[surface.owner].astype(float)
         place = x[surface.owner].astype(float) + np.einsum("sij,sj->si", F, surface.offset)
         normal = np.einsum("sji,sj->si", np.linalg.inv(F), surface.area)
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)  # a face that is shut has no area
         out = 1.0 if wall.side else -1.0
         plane = (extents(space)[wall.axis] - 1 - 2 * PAD) * space.h if wall.side else 0.0
         here = (out * (plane - place[:, wall.axis]) < REACH * space.h) & (out * normal[:, wall.axis] > FACING)

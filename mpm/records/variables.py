@@ -55,6 +55,9 @@ TABLE = [
     ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
+    ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
+    ("radius.95", "r95", "m", SERIES, "radius that holds 95 % of the volume"),
+    ("radius.99", "r99", "m", SERIES, "radius that holds 99 % of the volume"),
     ("J.min", "J", "1", SERIES, "smallest volume ratio det F"),
     ("J.max", "J", "1", SERIES, "largest volume ratio det F"),
     ("pressure.mean", "p", "Pa", SERIES, "mean pressure, weighted with volume"),
@@ -120,7 +123,7 @@ TABLE = [
 ]
 
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
-NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total")
+NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")
 FIELDS_GRID = ("temperature", "velocity", "density")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
@@ -176,5 +179,7 @@ def fits(observable: str, dimension: int | str) -> bool:
         return dimension == 0
     if dimension == 0 and observable in NOT_AT_A_POINT:
         return False
+    if observable.startswith("radius."):
+        return dimension == "axisymmetric"
     axis = observable[-1] if observable[-2:-1] in (".", "_") else ""
     return axis not in AXES or axis in {0: "", 1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}[dimension]

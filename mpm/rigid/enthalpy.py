@@ -3,7 +3,7 @@
     m_i dh_i/dt = s_i - sum_j B_ij theta(h_j) - sum_j K_ij Pi(h_j)        m_i = rho int N_i,  Pi = Kirchhoff's potential, grad Pi = kappa grad theta
 
 With constant kappa the two sums are one. No step can jump over latent heat, because h is what moves; 1.K = 0 makes sum m h the exchanged heat to round-off.
-(Behind a stiff surface to 3e-12: what is below ROUNDOFF is spread evenly over the body.)
+(Behind a stiff surface what is below ROUNDOFF is spread evenly over the body.)
 Second order in the cell (exact quadrature, lumped mass: physics.md 12).
 """
 

@@ -1,4 +1,4 @@
-"""Constant kappa and alpha: consistent mass, L-stable implicit steps, one factorisation a step size.
+"""Constant kappa and alpha: consistent mass, L-stable implicit steps; one factorisation a step size, or conjugate gradients (mpm.rigid.gradients).
 
     M u' = s - A u,   M = rho alpha int N N,   A = kappa K + sum beta B,   s = sum beta (outside - zero) int N        u = theta - zero
     (M + gamma dt A) k_i = s - A (u + dt sum_j<i a_ij k_j)
@@ -6,7 +6,7 @@
 Cholesky does not mind nodes that hardly touch the body: it is blind to diagonal scaling.
 Error estimate: dt (W M)^FILTERS sum e_i k_i, W = (M + gamma dt A)^-1 (damped like the method itself, Hairer & Wanner IV.8), root mean square over the body.
 Heat: 1.M k_i = 1.(s - A Y_i) with 1.K = 0, so the exchange sum is sum b_i (sum beta area outside - ...) to the round-off of the solve. Behind a stiff
-surface (beta h/kappa = 1e5 stands for infinity) that is 3e-12 of the heat: what is below ROUNDOFF is spread evenly over the body.
+surface (beta h/kappa = 1e5 stands for infinity) that is 3e-12 of the heat: what is below ROUNDOFF is spread evenly over the body (ledger 1e-15).
 Good values  tolerance 1e-4 of the largest temperature difference; order 4.
 """
 
@@ -15,14 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import kernel
-from mpm.rigid.band import back_substitute, factorise, fill
 from mpm.rigid.geometry import evaluated
+from mpm.rigid.gradients import Gradients, invert, inverted, make_factor, make_gradients, ready
 from mpm.rigid.nodes import apply
 from mpm.rigid.sdirk import TABLEAUS
 
 FILTERS, ROUNDOFF = 2, 1e-10
 CANCELLED = 1e-14  # of the terms that nearly cancel behind a stiff surface whose temperature changes
 FLOOR = 0.03  # of h^2 rho alpha/kappa
+CLOSE = 1e-4  # residual of conjugate gradients over the tolerance of a step
 
 
 class Problem(NamedTuple):
@@ -36,8 +37,10 @@ class Problem(NamedTuple):
 
 
 @kernel
-def stages(problem, band, a, error, dt, u, supply, received, k, flux):
-    """Stage slopes k (m, N) and the exchange rate of each stage, by a factor of M + gamma dt A; the square of the filtered error's mass norm."""
+def stages(problem, solver, a, error, dt, u, supply, received, k, flux):
+    """Stage slopes k (m, N), guessed from those of the last step, and the exchange rate of each stage, by a solver of M + gamma dt A.
+
+    Returns the square of the filtered error's mass norm."""
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
     for i in range(m):
@@ -48,7 +51,7 @@ def stages(problem, band, a, error, dt, u, supply, received, k, flux):
         apply(problem.matrix, problem.diff, y, work)
         for p in range(n):
             work[p] = supply[i, p] - work[p]
-        back_substitute(band, work)
+        invert(solver, work, k[i - 1] if i > 0 else k[m - 1])
         taken, total, size, scale = received[i], 0.0, 0.0, abs(received[i])
         for p in range(n):
             k[i, p] = work[p]
@@ -73,7 +76,7 @@ def stages(problem, band, a, error, dt, u, supply, received, k, flux):
             y[p] = work[p]
         apply(problem.mass, problem.diff, y, work)
         if turn < FILTERS:
-            back_substitute(band, work)
+            invert(solver, work, u * 0.0)
     for p in range(n):
         square += y[p] * work[p]
     return square
@@ -82,11 +85,11 @@ def stages(problem, band, a, error, dt, u, supply, received, k, flux):
 class LinearSteps:
     """Implicit steps of one body; the driver's protocol is in mpm.rigid.drive."""
 
-    CARRIES = ("state", "q", "now")
-    replan, radius = True, 0.0  # a new size costs a factorisation
+    CARRIES = ("state", "q", "now", "slopes")
+    radius = 0.0
 
-    def __init__(self, system, tolerance: float, order: int = 4):
-        """system: mpm.rigid.system.System with constant laws."""
+    def __init__(self, system, tolerance: float, order: int = 4, iterate: bool = False):
+        """system: mpm.rigid.system.System with constant laws; iterate: by conjugate gradients, not by a factorisation."""
         self.system, self.tableau = system, TABLEAUS[order]
         shaped, capacity = system.geometry, system.density * system.alpha.constant
         matrix = system.kappa.constant * shaped.stiffness + system.exchange
@@ -94,7 +97,9 @@ class LinearSteps:
         self.problem = Problem(shaped.nodes.diff, capacity * shaped.mass, matrix, system.facing, self.weight)
         self.allowed = tolerance * system.span * np.sqrt(self.weight.sum())
         self.idle = ~shaped.active
-        self.band, self.size = np.empty((shaped.nodes.size, shaped.nodes.diff[-1] + 1)), None
+        self.solver = make_gradients(shaped.nodes.diff, shaped.nodes.size, CLOSE * tolerance) if iterate else make_factor(shaped.nodes.diff, shaped.nodes.size)
+        self.replan = not iterate  # a new size costs a factorisation
+        self.size, self.slopes = None, np.zeros((len(self.tableau.a), shaped.nodes.size))
         self.now, self.longest, self.steady = 0.0, system.programmes.longest, None
         self.state = np.where(self.idle, 0.0, system.start - system.zero) if system.field is None else self.project(system.field)
         self.first, self.q, self.power = self.state, 0.0, self.tableau.power
@@ -110,12 +115,16 @@ class LinearSteps:
         index, spline = evaluated(shaped.nodes, shaped.x)
         each = (self.system.density * self.system.alpha.constant * shaped.w * (field(shaped.x) - self.system.zero))[:, None] * spline
         np.add.at(load, index, each)
-        fill(self.band, self.problem.diff, self.problem.mass, 1.0, self.problem.matrix, 0.0, self.idle)
-        if factorise(self.band) >= 0:
+        if not self.prepared(0.0):
             raise ValueError("the mass matrix of a rigid body is singular: the body is too thin for the cell")
         load[self.idle] = 0.0
-        back_substitute(self.band, load)
+        inverted(self.solver, load)
         return load
+
+    def prepared(self, dt: float) -> bool:
+        """Whether the solver is ready for M + dt A."""
+        problem = self.problem
+        return ready(self.solver, problem.diff, problem.mass, 1.0, problem.matrix, dt, self.idle, problem.weight + dt * problem.facing)
 
     def surroundings(self, dt: float):
         """Supply (m, N) and its sum (m,) at the stages of a step."""
@@ -128,19 +137,21 @@ class LinearSteps:
         """Error of a step of size dt over the tolerance."""
         tableau = self.tableau
         if dt != self.size:
-            fill(self.band, self.problem.diff, self.problem.mass, 1.0, self.problem.matrix, tableau.gamma * dt, self.idle)
-            failed, self.size = factorise(self.band), dt
-            if failed >= 0:
-                self.size = None
+            self.size = dt if self.prepared(tableau.gamma * dt) else None
+            if self.size is None:
                 return np.inf
-        k, flux = np.empty((len(tableau.a), len(self.state))), np.empty(len(tableau.a))
+        k, flux = self.slopes.copy(), np.empty(len(tableau.a))
         supply, received = self.surroundings(dt)
-        square = stages(self.problem, self.band, tableau.a, tableau.error, dt, self.state, supply, received, k, flux)
+        square = stages(self.problem, self.solver, tableau.a, tableau.error, dt, self.state, supply, received, k, flux)
+        if isinstance(self.solver, Gradients) and self.solver.count[0] < 0:
+            self.solver.count[0] = 0
+            return np.inf
         self.stages, self.fluxes, self.dt = k, flux, dt
         return float(np.sqrt(max(square, 0.0))) / self.allowed
 
     def accept(self):
         weights = self.tableau.a[-1]
+        self.slopes = self.stages
         self.q_before = self.q
         self.state = self.state + (self.dt * weights) @ self.stages
         self.q += self.dt * float(weights @ self.fluxes)

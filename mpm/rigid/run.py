@@ -19,7 +19,8 @@ from mpm.rigid.nodes import interpolate
 from mpm.rigid.system import System, make_system
 
 STEPS, FACTORS, LINEAR = 150, 500, 20  # of a run at the default tolerance: explicit steps, factorisations of Newton and of constant laws
-LARGE = 2e10  # multiply-adds of one factorisation that nobody waits for: 3 s
+LARGE, LESS = 2e10, 5e8  # multiply-adds of one factorisation that nobody waits for (3 s), and above which conjugate gradients are quicker, unless STIFF
+STIFF, SOLUTIONS, TURNS = 100.0, 150, (6, 200)  # beta h/kappa; solutions a run, iterations each below and above STIFF
 
 
 @dataclass(frozen=True)
@@ -69,26 +70,34 @@ class RigidRun:
 EVALUATION, PIVOT = 4e-10, 1.5e-10  # s a node and stencil entry (with its share of look-ups), s a multiply-add of the factorisation: measured
 
 
+def iterates(system: System) -> bool:
+    """Whether constant laws are solved by conjugate gradients rather than by a factorisation."""
+    nodes = system.geometry.nodes
+    return float(nodes.size) * float(nodes.diff[-1]) ** 2 > (LARGE if system.stiff > STIFF else LESS)
+
+
 def _costs(system: System, linear: bool, explicit: ChebyshevSteps | None, end: float) -> tuple[float, float]:
     """Seconds that a run would take: (explicit, implicit)."""
     diff, nodes = system.geometry.nodes.diff, float(system.geometry.nodes.size)
     band = float(diff[-1]) + 1
     evaluations = 0.0 if explicit is None else STEPS * np.sqrt(1 + 1.54 * explicit.radius * end / STEPS)
+    if linear and iterates(system):
+        return evaluations * nodes * (2 * len(diff) + 20) * EVALUATION, SOLUTIONS * TURNS[system.stiff > STIFF] * nodes * 4 * len(diff) * EVALUATION
     return evaluations * nodes * (2 * len(diff) + 20) * EVALUATION, (LINEAR if linear else FACTORS) * nodes * band * (band + 40) * PIVOT
 
 
 def choose(system: System, method: Method, end: float):
-    """The method's object for one body. `auto`: implicit where kappa and alpha are constant and a factorisation is bearable, else what costs less."""
+    """The method's object for one body. `auto`: implicit where kappa and alpha are constant, else what costs less."""
     if method.kind == "bounded":
         return BoundedSteps(system, method.tolerance)
     linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant) and len(system.hot) == 0
-    implicit = LinearSteps if linear else NewtonSteps
-    bearable = float(system.geometry.nodes.size) * float(system.geometry.nodes.diff[-1]) ** 2 < LARGE
-    if method.kind == "implicit" or (method.kind == "auto" and linear and bearable):
-        return implicit(system, method.tolerance, method.order)
+    if linear and method.kind != "explicit":
+        return LinearSteps(system, method.tolerance, method.order, iterates(system))
+    if method.kind == "implicit":
+        return NewtonSteps(system, method.tolerance, method.order)
     explicit = ChebyshevSteps(system, method.tolerance)
     cost, rival = _costs(system, linear, explicit, end)
-    return explicit if method.kind == "explicit" or cost < rival else implicit(system, method.tolerance, method.order)
+    return explicit if method.kind == "explicit" or cost < rival else NewtonSteps(system, method.tolerance, method.order)
 
 
 def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
@@ -106,7 +115,8 @@ def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
         found["unknowns"] += int(shaped.active.sum())
         found["methods"].append(type(steps).__name__)
         found["seconds"] += _costs(system, linear, steps if explicit else None, float(end))[0 if explicit else 1]
-        found["memory_bytes"] += 8 * int(shaped.mass.size * (5 + len(shaped.exchange)) + (0 if explicit else shaped.nodes.size * shaped.nodes.diff[-1]))
+        extra = 2 * shaped.mass.size if linear and iterates(system) else shaped.nodes.size * shaped.nodes.diff[-1]
+        found["memory_bytes"] += 8 * int(shaped.mass.size * (5 + len(shaped.exchange)) + (0 if explicit else extra))
         if explicit and steps.radius > 0:
             found["limits"]["euler"] = min(found["limits"].get("euler", np.inf), 2 / steps.radius)
     return found

@@ -18,6 +18,7 @@ from mpm.scene.exchange import exchanging_surface
 from mpm.scene.load import loaded
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
+from mpm.scene.seams import seams_of, with_seams
 from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
@@ -81,7 +82,7 @@ def grid_space(experiment):
 
 
 def sample(experiment, body):
-    """Cut cells of a body, in the grid's coordinates."""
+    """Cut cells of a body in the grid's coordinates, and the edges of the particle cells."""
     grid, method = experiment.grid, experiment.method
     outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
@@ -94,7 +95,7 @@ def sample(experiment, body):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
             raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
     edges = [np.arange(math.floor(low / edge + 1e-9), math.ceil(high / edge - 1e-9) + 1) * edge for low, high in zip(lower, upper, strict=True)]
-    return by_nodes(cells(outline, edges, radial=grid.dimension == "axisymmetric"), grid.cell)
+    return by_nodes(cells(outline, edges, radial=grid.dimension == "axisymmetric"), grid.cell), edges
 
 
 def by_nodes(cut, h: float):
@@ -138,10 +139,10 @@ def expansion_law(model, elastic, theta: np.ndarray, zero: float):
 
 
 def moving_body(experiment, name: str, zero: float, space):
-    """(Body, its Surroundings or None): particles and laws of one body."""
+    """(Body, its Surroundings or None, its Seams or None): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut = sample(experiment, config)
+    cut, edges = sample(experiment, config)
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -161,10 +162,14 @@ def moving_body(experiment, name: str, zero: float, space):
         ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
         flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
     thermal, surface, expansion, heating, surroundings = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
+    seams = None
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
-        surface, surroundings = exchanging_surface(experiment, name, cut, zero, SIDES[experiment.grid.dimension], thermal)
+        opening = experiment.method.fracture == "surface"
+        pieces, inner, area = with_seams(cut, edges, experiment.grid.dimension == "axisymmetric") if opening else (cut, None, None)
+        surface, surroundings, kept = exchanging_surface(experiment, name, pieces, zero, SIDES[experiment.grid.dimension], thermal)
+        seams = seams_of(kept, inner, area) if opening and surroundings is not None else None
     if material.expansion is not None:
         expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
     if material.heating is not None:
@@ -173,7 +178,7 @@ def moving_body(experiment, name: str, zero: float, space):
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
     source = loaded(experiment, name, cut, space, gradient_operator(experiment))
-    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings
+    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams
 
 
 def spin_tensor(omega, D: int) -> np.ndarray:
@@ -229,7 +234,9 @@ def build(experiment, exact=None) -> Scene:
     scheme, blend, affine, sharp = schemes(experiment)
     D = experiment.grid.directions
     times = output_times(experiment)
-    bodies, surroundings = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
+    bodies, surroundings, seams = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
+    if experiment.method.fracture == "surface" and not any(seams):
+        raise SceneError("method.fracture: surface opens faces that exchange heat, and nothing acts on the surface of a body: name it in `surfaces`")
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)
@@ -248,6 +255,7 @@ def build(experiment, exact=None) -> Scene:
         names=names,
         bodies=bodies,
         surroundings=surroundings,
+        seams=seams,
         walls=wall_kinds(experiment),
         gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * D),
         blend=blend,

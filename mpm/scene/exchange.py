@@ -51,12 +51,12 @@ def hot_walls(experiment, sides) -> list[HotWall]:
 
 
 def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
-    """(Surface, Surroundings) of a body: the pieces that an entry names, all of them where a wall is hot; (NoExchange, None) where nothing acts."""
+    """(Surface, Surroundings, pieces kept) of a body: the pieces that an entry names, all of them where a wall is hot; NoExchange, None where nothing acts."""
     acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side)))]
     acts = [act for act in acts if len(act.pieces)]
     walls = hot_walls(experiment, sides)
     if not acts and not walls:
-        return NoExchange(), None
+        return NoExchange(), None, np.zeros(0, np.int64)
     kept = np.arange(len(cut.owner)) if walls else np.unique(np.concatenate([act.pieces for act in acts]))
     acts = [Act(np.searchsorted(kept, act.pieces), act.beta, act.outside, act.flux, act.emissivity, act.sky) for act in acts]
     radiating = [act for act in acts if act.emissivity > 0]
@@ -75,4 +75,4 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
         F, owner, cut.area[kept, None] * cut.normal[kept], cut.point[kept] - cut.centroid[owner],
         np.zeros(S), np.zeros(S), np.zeros(S), np.zeros(S), radiation,
     )  # fmt: skip
-    return surface, Surroundings(acts, walls, zero, most)
+    return surface, Surroundings(acts, walls, zero, most), kept
