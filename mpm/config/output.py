@@ -42,6 +42,13 @@ class RobinCylinder(Kind):
     body: str | None = doc(None, description="the body that is the cylinder; the only one unless given")
 
 
+class RobinSphere(Kind):
+    """Series solution of a sphere with Robin exchange."""
+
+    kind: ClassVar[str] = "robin_sphere"
+    body: str | None = doc(None, description="the body that is the sphere; the only one unless given")
+
+
 class Adiabatic(Kind):
     """Adiabatic heating of a thermoelastic material point."""
 
@@ -77,5 +84,7 @@ class LumpedCooling(Kind):
     body: str | None = doc(None, description="the material point; the only body unless given")
 
 
-EXACT: tuple[type[Kind], ...] = (RobinSlab, RobinCylinder, Adiabatic, ThermalExpansion, Relaxation, ShearHeating, LumpedCooling, *MOVING, *HEAT)
+EXACT: tuple[type[Kind], ...] = (
+    RobinSlab, RobinCylinder, RobinSphere, Adiabatic, ThermalExpansion, Relaxation, ShearHeating, LumpedCooling, *MOVING, *HEAT,
+)  # fmt: skip
 Exact = one_of("exact solution", *EXACT)

@@ -7,6 +7,10 @@ samples   massless points on the surface itself: w(x_s)
 The same cut cells, APIC transfer and steps for all, 2 particles a cell and direction; backward Euler of 0.0375 h^2 where the error is asked (so that the step
 adds little), by sparse LU. `explicit`: the longest stable explicit step 2/lambda over h^2, least of the offsets; samples reach nodes that no particle does, and
 those have no capacity: an explicit step has nothing to put their heat in (its share is given as `lost`), an implicit one carries them as massless unknowns.
+
+Measured (configs/verification/surfaces.md). Depth is of order 1 everywhere; behind beta = inf its explicit step is 28 times longer.
+Samples are as exact as `exact` while every node they reach has a particle. Where the shape ends in a sliver too thin for one (offset 0.503), massless nodes
+take on the surface temperature by themselves, and the body hardly cools: errors of 0.1 that fall with order 0.5. They win nowhere.
 """
 
 from dataclasses import dataclass

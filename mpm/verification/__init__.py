@@ -21,6 +21,7 @@ from mpm.verification import (
     robin_cylinder,
     robin_ring,
     robin_slab,
+    robin_sphere,
     shear_heating,
     standing_wave,
     stefan,
@@ -30,6 +31,7 @@ from mpm.verification import (
 EXACT = {
     "robin_slab": robin_slab.exact,
     "robin_cylinder": robin_cylinder.exact,
+    "robin_sphere": robin_sphere.exact,
     "adiabatic": adiabatic.exact,
     "thermal_expansion": thermal_expansion.exact,
     "relaxation": relaxation.exact,
