@@ -15,6 +15,7 @@ from mpm.boundary import directions, extents
 from mpm.guards import Guards, explain
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
+from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
@@ -170,7 +171,7 @@ def work_arrays(scene: Scene):
     nodes = aligned((2, n, columns(D)), dtype)
     force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
-    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else IMPLICIT_ROWS
+    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else max(IMPLICIT_ROWS, STABILISED_ROWS)
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
 
 

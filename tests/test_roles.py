@@ -120,7 +120,7 @@ def test_compiled_equals_plain_python(plain):
 # Siblings that would cost a compilation each: slow tests, or tests of their own rooms, run them compiled. A new one is named here or gets a scene.
 ELSEWHERE = {
     "impulse_parts(Mls)", "carry(Xpic)", "wants_change(Xpic)", "sharpen(Xpic)", "what_is_lost(Isothermal)", "what_is_lost(Thermal)",
-    "scatter_square(Plane)", "scatter_square(Axisymmetric)", "scatter_square(Volume)", "advance_heat(Isothermal)", "advance_implicit(Isothermal)",
+    "nodes_of(Plane)", "nodes_of(Axisymmetric)", "nodes_of(Volume)", "advance_heat(Isothermal)", "advance_implicit(Isothermal)",
     "meet(NoExchange)", "place(NoExchange)", "radiate(Radiation)", "rise(Bump)", "rise(Logistic)", "rise(Table)",
     "thermal_stress(Latched)", "latch(Latched)", "flows(EllipseClipped)", "flows(EllipseRadial)",
     "act(Source)", "take_up(Isothermal)", "take_up(Thermal)",  # tests/verification/test_manufactured.py

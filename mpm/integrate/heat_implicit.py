@@ -1,4 +1,4 @@
-"""One implicit heat step of a moving body: conduction and surface together, by matrix-free conjugate gradients (physics.md 3, 11).
+"""One implicit heat step of a moving body: conduction and surface together, by conjugate gradients (heat_matrix.py; physics.md 3, 11).
 
     C (theta_k - base_k) = gamma dt f(theta_k),   f = sum V q grad(w) + sum S [q - beta (theta_s - outside)] w~,   theta+ = theta + dt sum b_k f(theta_k)/C
     order 1   backward Euler: gamma = 1                    order 2   Alexander's two stages: gamma = 1 - 1/sqrt(2); both L-stable
@@ -6,7 +6,7 @@
 C, kappa and radiation's secants are those of the step's start. The step ends with the fluxes at the stage temperatures:
 the heat of the particles changes by exactly what the pieces exchanged, however loose the tolerance; an iterate's residual r
 only moves heat between nodes, by r/C.
-Mirror walls fold in the operator: ghost nodes are no unknowns. Preconditioned by the diagonal of C + gamma dt A.
+Mirror walls fold in the operator: ghost nodes are no unknowns. The matrix of a step is made on the nodes, and factored incompletely.
 Good values  tolerance 1e-9.   Fails when: iterations pass MOST (returned, not hidden).
 """
 
@@ -15,16 +15,16 @@ import numpy as np
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.walls import clear, fold, unfold
 from mpm.heat.exchange import meet
+from mpm.integrate.heat_matrix import conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.pieces import load_piece, place, temperature_at
 from mpm.jit import kernel, role
 from mpm.materials.laws import value
 from mpm.state import PAD, Isothermal, Thermal
-from mpm.transfer import CHUNK, gather_scalar, scatter_scalar, scatter_square
+from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
-MOST = 5000
 GAMMA = 1.0 - 0.5**0.5
-ROWS = 10  # scratch fields
+ROWS = 6  # scratch fields
 
 
 @kernel
@@ -50,7 +50,7 @@ def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
     x = body.particles.x
     box = reach(space, x)
     capacity, theta, base, total = nodes[0], nodes[1], nodes[2], nodes[3]
-    stage, rate, solver = nodes[4], nodes[5], nodes[6:]
+    stage, rate = nodes[4], nodes[5]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
     scatter_heat(space, x, body.particles.m, thermal, capacity, theta, work)
     folded = box.copy()
@@ -71,7 +71,7 @@ def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
             met[0, s], met[1, s], met[2, s] = meet(body.surface, s, there, thermal.zero, part)
         if k == 1:  # base = theta + (1 - gamma) dt f_1/C
             combine(base, theta, total, capacity, 1.0, shape, box)
-        count = solve(space, x, flow, pieces, met, capacity, base, gamma * dt, tolerance, walls, box, stage, rate, solver, work)
+        count = solve(space, x, flow, pieces, met, capacity, base, gamma * dt, tolerance, walls, box, stage, rate, work)
         if count < 0:
             break
         iterations += count
@@ -149,81 +149,22 @@ def load(space, x, flow, pieces, met, theta, rate, dt, sources, work):
 
 
 @kernel
-def diagonal(space, x, flow, pieces, met, capacity, dt, out, work):
-    """out = diag(C + dt A), ghost contributions left where they are."""
-    D = directions(space)
-    scale, one, G = work[0], work[1], work[2 : 2 + D]
-    for k in range(D):
-        one[:] = 0.0
-        G[:] = 0.0
-        G[k] = 1.0
-        for first in range(0, x.shape[0], CHUNK):
-            count = min(CHUNK, x.shape[0] - first)
-            for p in range(count):
-                scale[p] = dt * flow[first + p]
-            scatter_square(space, x, first, count, scale, one, G, out)
-    owner, area, offset = pieces
-    one[0] = 1.0
-    for s in range(owner.shape[0]):
-        scale[0] = dt * area[s] * met[0, s]
-        for k in range(D):
-            G[k, 0] = offset[k, s]
-        scatter_square(space, x, owner[s], 1, scale, one, G, out)
-
-
-@kernel
-def solve(space, x, flow, pieces, met, capacity, base, dt, tolerance, walls, box, theta, rate, solver, work):
-    """theta with C (theta - base) = dt f(theta) on the nodes with capacity, by conjugate gradients from `base`; iterations, or -1.
-
-    Ends when the residual, as temperature (norm weighted with C), is below `tolerance` of the change. rate comes and goes as zero.
-    """
+def solve(space, x, flow, pieces, met, capacity, base, dt, tolerance, walls, box, theta, rate, work):
+    """theta with C (theta - base) = dt f(theta) on the nodes with capacity, from `base`; iterations, or -1. rate comes and goes as zero."""
     shape = extents(space)
-    r, p, inverse, change = solver[0], solver[1], solver[2], solver[3]
     each = inside(capacity, shape, box)
-    inverse[:] = 0.0
-    diagonal(space, x, flow, pieces, met, capacity, dt, inverse, work)
-    fold(inverse.reshape(-1, 1), 0, shape, box.copy(), walls)
     ghosts = base.reshape(-1, 1)
     unfold(ghosts, 0, shape, box, walls)
     load(space, x, flow, pieces, met, base, rate, dt, 1.0, work)
     fold(rate.reshape(-1, 1), 0, shape, box, walls)
-    rho = 0.0
-    for n in each:
-        inverse[n] = 1.0 / (capacity[n] + inverse[n])
-        r[n] = rate[n]
-        p[n] = inverse[n] * r[n]
-        rho += r[n] * p[n]
-        change[n] = 0.0
-        theta[n] = base[n]
-    done = -1
-    for count in range(MOST):
-        size, moved = 0.0, 0.0
-        for n in each:
-            size += r[n] * r[n] / capacity[n]
-            moved += capacity[n] * change[n] * change[n]
-        if size <= tolerance * tolerance * moved or rho == 0.0:
-            done = count
-            break
-        wipe(rate, shape, box)
-        unfold(p.reshape(-1, 1), 0, shape, box, walls)
-        load(space, x, flow, pieces, met, p, rate, -dt, 0.0, work)
-        fold(rate.reshape(-1, 1), 0, shape, box, walls)
-        curve = 0.0
-        for n in each:
-            rate[n] += capacity[n] * p[n]
-            curve += p[n] * rate[n]
-        step, before = rho / curve, rho
-        rho = 0.0
-        for n in each:
-            change[n] += step * p[n]
-            r[n] -= step * rate[n]
-            rho += inverse[n] * r[n] * r[n]
-        for n in each:
-            p[n] = inverse[n] * r[n] + rho / before * p[n]
-    for n in each:
-        theta[n] = base[n] + change[n]
+    r, weight, change = np.empty(len(each)), np.empty(len(each)), np.empty(len(each))
+    for k in range(len(each)):
+        r[k], weight[k] = rate[each[k]], capacity[each[k]]
     wipe(rate, shape, box)
-    wipe(p, shape, box)
+    rows, columns, between = matrix(space, shape, x, flow, pieces, met, capacity, each, dt, walls)
+    done = conjugate_gradients(rows, columns, between, weight, r, change, tolerance)
+    for k in range(len(each)):
+        theta[each[k]] = base[each[k]] + change[k]
     return done
 
 

@@ -37,6 +37,23 @@ def faces(body, piece: np.ndarray) -> np.ndarray:
     return body.particles.x[owner].astype(float) + np.einsum("pij,pj->pi", surface.F[owner].astype(float), surface.offset[piece])
 
 
+def company(x, places, distance: float) -> np.ndarray:
+    """Which `places` (M, D), all of them between points x (N, D), have a point within `distance`."""
+    low = x.min(axis=0) - distance
+    cell, home = (np.floor((a - low) / distance).astype(int) for a in (x, places))
+    shape = tuple(np.maximum(cell.max(axis=0), home.max(axis=0)) + 2)
+    key = np.ravel_multi_index(cell.T, shape)
+    order = np.argsort(key)
+    found = np.zeros(len(places), dtype=bool)
+    for shift in np.ndindex(*[3] * x.shape[1]):
+        there = np.ravel_multi_index((home + np.array(shift) - 1).T, shape, mode="clip")
+        first, last = np.searchsorted(key[order], there, "left"), np.searchsorted(key[order], there, "right")
+        owner = np.repeat(np.arange(len(places)), last - first)
+        point = order[np.arange(len(owner)) - np.repeat(np.cumsum(last - first) - last, last - first)]
+        found[owner[np.sum((x[point] - places[owner]) ** 2, axis=1) <= distance**2]] = True
+    return found
+
+
 def tear(space, body, seams: Seams) -> int:
     """Open what has come apart; the number of faces opened."""
     shut = np.flatnonzero(~seams.torn(body))
@@ -47,9 +64,7 @@ def tear(space, body, seams: Seams) -> int:
     far = np.flatnonzero(np.any(np.abs(base[:, 1] - base[:, 0]) >= reach, axis=1))
     if len(far) == 0:
         return 0
-    from scipy.spatial import cKDTree
-
     middle = 0.5 * (faces(body, pieces[far, 0]) + faces(body, pieces[far, 1]))
-    apart = far[cKDTree(x).query(middle)[0] > NEAR * space.h]
+    apart = far[~company(x, middle, NEAR * space.h)]
     body.surface.area[seams.piece[shut[apart]]] = seams.area[shut[apart]]
     return len(apart)

@@ -22,6 +22,7 @@ Made by `python -m mpm.study.verification`. Each line is a config of this folder
 at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
 displacement over all times and particles, relative (of the membrane at rest: at the end); of temperature at the end. Time is that of the three runs on a
 busy machine, without compilation. A problem without an order is exact in any step, or (rigid_rotation) bounded by the load of its own motion.
+How heat is exchanged at a free surface, three ways measured: [surfaces.md](surfaces.md), made by `python -m mpm.study.surfaces`.
 
 | config | method | refined | error | at three resolutions | order | declared | time, s |
 |---|---|---|---|---|---|---|---|

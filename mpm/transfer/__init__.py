@@ -6,7 +6,7 @@ A transfer is a pair of linear maps; it knows no physics. With weights w, offset
 Momentum, forces, heat, conduction and surface exchange are all of this form (physics.md 3).
 
 Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py), then by basis: quadratic ones by rows of lanes (rows.py)
-          scatter_scalar, gather_scalar: one scalar field, for heat; scatter_square (square.py): the diagonal of its implicit operator
+          scatter_scalar, gather_scalar: one scalar field, for heat
           carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py, xpic.py)
 Shapes    chunk arrays (component, particle of the chunk); nodes (node, columns(D)): momentum (then velocity), mass, room
 May use   mpm.basis, mpm.jit, mpm.state                      May not  see laws
@@ -37,10 +37,9 @@ from mpm.transfer.roles import (
     uses_basis_gradient,
     wants_change,
 )  # fmt: skip
-from mpm.transfer.square import scatter_square
 from mpm.transfer.xpic import Xpic
 
 __all__ = [
     "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "deliver", "fetch", "gather", "gather_scalar", "lay_down",
-    "line", "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "scatter_square", "spread", "uses_basis_gradient", "volume", "wants_change",
+    "line", "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "spread", "uses_basis_gradient", "volume", "wants_change",
 ]  # fmt: skip
