@@ -17,7 +17,6 @@ from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
-from mpm.integrate.heat_implicit import ROWS as IMPLICIT_ROWS
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
@@ -25,7 +24,7 @@ from mpm.integrate.order import Order
 from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
 from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
-from mpm.integrate.tears import tear
+from mpm.integrate.tears import tear_open
 from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.lanes import aligned
 from mpm.memory import arrays, fill
@@ -171,7 +170,7 @@ def work_arrays(scene: Scene):
     nodes = aligned((2, n, columns(D)), dtype)
     force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
-    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else max(IMPLICIT_ROWS, STABILISED_ROWS)
+    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else STABILISED_ROWS
     return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
 
 
@@ -205,9 +204,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     if not now.heat:
         return outcome(COMPLETED)
-    for body, seams in zip(scene.bodies, scene.seams, strict=False):
-        if seams is not None:
-            tear(scene.space, body, seams)
+    tear_open(scene)
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=False) if one is not None]
     for body, one in around:
         one.write(scene.space, body, clock.time, dt)
@@ -222,8 +219,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         lost = lost_to_grid(scene, body, buffers[3])
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
         if implicit:
-            order, tolerance = scene.heat.order, scene.heat.tolerance
-            gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, order, tolerance, scene.blend, scene.affine)
+            gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
             if iterations < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += iterations
@@ -248,9 +244,8 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
 
 def lost_to_grid(scene: Scene, body, rows):
     """What XPIC takes from the temperatures of a body in this heat step, and alpha at its start; None with other transfers."""
-    if not scene.sharp or not isinstance(body.thermal, Thermal):
-        return None
-    return specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)
+    warm = scene.sharp and isinstance(body.thermal, Thermal)
+    return (specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)) if warm else None
 
 
 def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) -> None:
@@ -300,4 +295,3 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     return outcome(COMPLETED)
-

@@ -24,12 +24,11 @@ from mpm.state import PAD, Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
 GAMMA = 1.0 - 0.5**0.5
-ROWS = 6  # scratch fields
 
 
 @kernel
 def heat_implicit(space, body, nodes, walls, dt, order, tolerance, blend, affine):
-    """Advance one body's temperatures by dt; nodes: (ROWS, n) scratch, zero before and after. Returns (heat gained [J], iterations or -1)."""
+    """Advance one body's temperatures by dt; nodes: (6 or more, n) scratch, zero before and after. Returns (heat gained [J], iterations or -1)."""
     return advance_implicit(body.thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
 
 

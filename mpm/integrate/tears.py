@@ -68,3 +68,10 @@ def tear(space, body, seams: Seams) -> int:
     apart = far[~company(x, middle, NEAR * space.h)]
     body.surface.area[seams.piece[shut[apart]]] = seams.area[shut[apart]]
     return len(apart)
+
+
+def tear_open(scene) -> None:
+    """Open what has come apart in every body that may tear."""
+    for body, seams in zip(scene.bodies, scene.seams, strict=False):
+        if seams is not None:
+            tear(scene.space, body, seams)

@@ -133,14 +133,19 @@ def main(names: list[str]) -> None:
     unknown = [name for name in names if name not in paths]
     if unknown:
         raise SystemExit(f"no config {', '.join(unknown)}; there are {', '.join(paths)}")
-    rows, wave = written(target.read_text(encoding="utf-8")) if names and target.exists() else ({}, "")
+    rows, wave = written(target.read_text(encoding="utf-8")) if target.exists() else ({}, "")
     for name in names or paths:
         rows[name] = measure(paths[name]).text()
         print(rows[name], file=sys.stderr, flush=True)
-    if not wave or "standing_wave" in names:
+        write(target, [rows[name] for name in paths if name in rows], wave)  # a run that is cut keeps what it has
+    if not wave or not names or "standing_wave" in names:
         wave = table()[1]
         print(wave, file=sys.stderr, flush=True)
-    lines = [rows[name] for name in paths if name in rows]
+        write(target, [rows[name] for name in paths if name in rows], wave)
+
+
+def write(target: Path, lines: list[str], wave: str) -> None:
+    """The table as it stands."""
     target.write_text(HEAD + "\n".join(lines) + "\n" + WAVE + wave, encoding="utf-8")
 
 
