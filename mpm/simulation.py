@@ -219,10 +219,10 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         lost = lost_to_grid(scene, body, buffers[3])
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
         if implicit:
-            gained, iterations = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
-            if iterations < 0:
+            gained, count = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
+            if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
-            clock.iterations += iterations
+            clock.iterations += count
         elif kind != "explicit":
             gained = heat_chebyshev(scene.space, body, buffers[3], scene.walls, dt, substeps, scene.blend, scene.affine)
         else:
