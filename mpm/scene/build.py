@@ -14,11 +14,10 @@ from mpm.boundary import KINDS, extents
 from mpm.error import Motion
 from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NeoHookean, NoFlow, Porous, table
 from mpm.observe import Watch
-from mpm.scene.exchange import exchanging_surface
 from mpm.scene.load import loaded
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
-from mpm.scene.seams import seams_of, with_seams
+from mpm.scene.seams import refuse_idle, surface_and_seams
 from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
@@ -161,15 +160,11 @@ def moving_body(experiment, name: str, zero: float, space):
     if material.flow is not None:
         ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
         flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
-    thermal, surface, expansion, heating, surroundings = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
-    seams = None
+    seams, thermal, surface, expansion, heating, surroundings = None, Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
-        opening = experiment.method.fracture == "surface"
-        pieces, inner, area = with_seams(cut, edges, experiment.grid.dimension == "axisymmetric") if opening else (cut, None, None)
-        surface, surroundings, kept = exchanging_surface(experiment, name, pieces, zero, SIDES[experiment.grid.dimension], thermal)
-        seams = seams_of(kept, inner, area) if opening and surroundings is not None else None
+        surface, surroundings, seams = surface_and_seams(experiment, name, cut, edges, zero, SIDES[experiment.grid.dimension], thermal)
     if material.expansion is not None:
         expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
     if material.heating is not None:
@@ -235,8 +230,7 @@ def build(experiment, exact=None) -> Scene:
     D = experiment.grid.directions
     times = output_times(experiment)
     bodies, surroundings, seams = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
-    if experiment.method.fracture == "surface" and not any(seams):
-        raise SceneError("method.fracture: surface opens faces that exchange heat, and nothing acts on the surface of a body: name it in `surfaces`")
+    refuse_idle(experiment, seams)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)

@@ -9,6 +9,23 @@ from dataclasses import replace
 import numpy as np
 
 from mpm.integrate.tears import Seams
+from mpm.scene.exchange import exchanging_surface
+from mpm.scene.refusal import SceneError
+
+
+def surface_and_seams(experiment, name: str, cut, edges, zero: float, sides, thermal):
+    """(Surface, Surroundings, Seams) of a body, as mpm.scene.exchange gives them; no seams unless `method.fracture: surface` asks for them."""
+    if experiment.method.fracture != "surface":
+        return *exchanging_surface(experiment, name, cut, zero, sides, thermal)[:2], None
+    more, piece, area = with_seams(cut, edges, experiment.grid.dimension == "axisymmetric")
+    surface, surroundings, kept = exchanging_surface(experiment, name, more, zero, sides, thermal)
+    return surface, surroundings, None if surroundings is None else seams_of(kept, piece, area)
+
+
+def refuse_idle(experiment, seams) -> None:
+    """SceneError where surfaces are to open and none exchanges heat."""
+    if experiment.method.fracture == "surface" and not any(seams):
+        raise SceneError("method.fracture: surface opens faces that exchange heat, and nothing acts on the surface of a body: name it in `surfaces`")
 
 
 def with_seams(cut, edges, radial: bool):
