@@ -163,5 +163,11 @@ def table(kinds=("slab", "disc"), biots=(1.0, 10.0, np.inf), cells=None) -> str:
     return HEAD + "\n".join(rows) + "\n"
 
 
+TITLE = """# Three ways to exchange heat at a free surface
+
+Made by `python -m mpm.study.surfaces > configs/verification/surfaces.md`; what the ways and columns are stands at the head of `mpm/study/surfaces.py`.
+
+"""
+
 if __name__ == "__main__":
-    print(table(), end="")
+    print(TITLE + table(), end="")
