@@ -7,6 +7,7 @@ A kill comes before the call, after it, or in the middle of a write. RANDOM kill
 """
 
 import errno
+import itertools
 import json
 import os
 import random
@@ -158,8 +159,10 @@ def kill(folder, moments, every):
         long = time.monotonic() - began
         shutil.rmtree(folder / "again")
         plans = [(at, dies(when), None) for at in range(1, calls + 1, every) for when in ("before", "amid", "after")]
-        plans += [(0, None, chance.uniform(0, 1.1 * long)) for _ in range(moments // len(SWEEPS))]
-        for at, act, moment in plans:
+        wanted, tries = moments // len(SWEEPS), 4 * moments  # some moments come after the end
+        for at, act, moment in itertools.chain(plans, ((0, None, chance.uniform(0, long)) for _ in range(tries))):
+            if moment is not None and wanted <= 0:
+                break
             out = folder / "out"
             code, _, told, _ = sweep(data, out, at, act, moment)
             bad = look(data, out, told) if out.exists() else []
@@ -167,6 +170,7 @@ def kill(folder, moments, every):
             if bad:
                 wrongs.append([name, at, moment, code, bad])
             cuts["calls" if moment is None else "moments"] += code == -9  # a sweep whose batches came out larger makes fewer calls
+            wanted -= moment is not None and code == -9
             cuts["told"] += len(told)
             shutil.rmtree(out, ignore_errors=True)
     return {**cuts, "wrong": wrongs[:20], "wrongs": len(wrongs)}

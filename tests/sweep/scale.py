@@ -16,6 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import h5netcdf  # noqa: F401  (what a collect imports is no growth: it is there from the start)
 import numpy as np
 
 from mpm.config import load
