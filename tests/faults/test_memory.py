@@ -38,7 +38,7 @@ def ratio(name, settings):
     """The estimate over the peak of a worker that runs the point, kernels in the cache; and the peak [bytes]."""
     experiment = load(ROOT / "configs" / name, settings)
     short = experiment.resolved() | {"sweep": None, "smoke": None}
-    short["time"]["end"] *= 1e-3 if experiment.moving else 1.0
+    short["time"]["end"] *= 1e-3 if experiment.moving and experiment.grid.dimension != 0 else 1.0
     short["output"]["every"] = short["time"]["end"]
     for cold in (True, False):
         done = subprocess.run([sys.executable, "-c", PEAK, json.dumps([cold, short]), str(ROOT)], capture_output=True, text=True, check=True)

@@ -24,4 +24,5 @@ def test_10_000_points_of_the_slab(tmp_path, monkeypatch, table):
     told = f"overhead {found['overhead_ms']:.2f} ms a point beside {found['alone_ms']:.2f} ms of its own; parent {found['memory_first_MB']:.0f} MB at the first"
     told += f" point, {found['memory_last_MB']:.0f} at the last; {found['files']} files; collect {found['collect_s']:.1f} s, open {found['open_s']:.2f} s"
     table("10 000 points of the slab, one worker", told)
-    assert found["overhead_ms"] < 2 and found["memory_last_MB"] < 1.2 * found["memory_first_MB"] and found["collect_s"] < 30 and found["open_s"] < 1
+    grown = (found["memory_last_MB"] - found["memory_first_MB"]) * 1e6 / found["points"]  # of which 0.6 kB stay; the rest is what a collect meanwhile leaves
+    assert found["overhead_ms"] < 2 and grown < 3000 and found["collect_s"] < 30 and found["open_s"] < 1
