@@ -26,11 +26,11 @@ def estimate(experiment) -> dict:
 
 
 def memory(experiment) -> int:
-    """Bytes of a process that runs the point, at its peak, kernels in the cache: within 20 % (tests/test_costs.py). Particles are counted, not made."""
-    particles = count_particles(experiment)
-    fields = 3 * output_bytes(experiment, particles)  # as they are collected, joined and packed
+    """Bytes of a process that runs the point, at its peak, kernels in the cache: within 20 % (tests/faults/test_memory.py). Particles are counted, not made."""
     if experiment.grid.dimension == 0:
         return BYTES_PROCESS["point"]
+    particles = count_particles(experiment)
+    fields = 3 * output_bytes(experiment, particles)  # as they are collected, joined and packed
     if not experiment.moving:
         return estimate_rigid(experiment)["memory_bytes"] + fields
     nodes = math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)

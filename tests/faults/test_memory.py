@@ -10,7 +10,9 @@ import pytest
 from scenes import config, go
 
 from mpm.config import load
-from mpm.sweep.api import tree_of
+from mpm.costs import memory, memory_at_most
+from mpm.sweep.api import execute, tree_of
+from mpm.sweep.engine import Options
 
 ROOT = Path(__file__).parents[2]
 PEAK = """
@@ -67,6 +69,13 @@ def test_what_wants_too_much_memory_is_refused_or_ended_alone(tmp_path, marks, t
     assert "of memory, and 400 MB are allowed" in grew and grabbed == "killed: wants more memory than is allowed or free"
     said = "refused before it runs; killed, and not tried again; killed; the others ok, exit code 3"
     table("a point over the memory limit by its estimate; creeping over it; asking for it at once", said)
+
+
+def test_a_material_point_has_an_estimate_and_can_be_refused(tmp_path):
+    """It has no cells to count particles by: that was an internal error where little memory was allowed."""
+    point = load(ROOT / "configs" / "scenes" / "dough_rheometer.yaml")
+    assert memory(point) == memory_at_most(point) > 1e8
+    assert execute(point, tmp_path, Options(jobs=2, memory=1e6)).counts["failed"] == 9
 
 
 def test_where_nothing_can_run_no_worker_starts(tmp_path, marks, monkeypatch):
