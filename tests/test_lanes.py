@@ -21,6 +21,7 @@ from mpm.lanes import (
     load4,
     load8,
     log1p,
+    logarithm,
     low,
     maximum,
     minimum,
@@ -92,6 +93,7 @@ def powers(x, out):
         store(out, p, log1p(load8(x, p)))
         store(out, n + p, expm1(load8(x, p)))
         store(out, 2 * n + p, exponential(load8(x, p)))
+        store(out, 3 * n + p, logarithm(absolute(load8(x, p)) + 1e-30))
 
 
 N = 1 << 18 if hasattr(powers, "signatures") else 1 << 10
@@ -103,14 +105,17 @@ def test_logarithm_and_exponential_to_two_ulp(real):
     rng = np.random.default_rng(3)
     small = 10.0 ** rng.uniform(-30, 0, N // 4)
     x = np.concatenate([rng.uniform(-0.99, 3, N // 4), small, -0.999 * small, rng.uniform(-80, 80, N // 8), 10.0 ** rng.uniform(0, 30, N // 8)]).astype(real)
-    out = np.zeros((3, N), real)
+    out = np.zeros((4, N), real)
     powers(x, out)
     wide, unit = x.astype(np.longdouble), np.finfo(real).eps
     inside, moderate = x > -1, np.abs(x) < 80
     for found, function, where in ((out[0], np.log1p, inside), (out[1], np.expm1, moderate), (out[2], np.exp, moderate)):
         expected = function(wide[where])
         assert np.max(np.abs(found[where] - expected) / np.abs(expected)) < 2 * unit
-    plain = np.zeros((3, 8), real)
+    positive = (np.abs(x) + real(1e-30)).astype(np.longdouble)
+    away = np.abs(positive - 1) > 1e-3  # from its root, where it is log1p's task
+    assert np.max((np.abs(out[3] - np.log(positive)) / np.abs(np.log(positive)))[away]) < 2 * unit
+    plain = np.zeros((4, 8), real)
     powers.py_func(x[:8], plain)
     assert np.allclose(plain, out[:, :8], rtol=4 * unit)
 
@@ -118,7 +123,7 @@ def test_logarithm_and_exponential_to_two_ulp(real):
 @pytest.mark.parametrize("real", [np.float32, np.float64])
 def test_powers_at_their_ends(real):
     x = np.array([np.nan, -1e4, 1e4, 0.0, -0.0, 1e-38, -80.0, np.inf], real)
-    out = np.zeros((3, 8), real)
+    out = np.zeros((4, 8), real)
     powers(x, out)
     assert np.isnan(out[:, 0]).all() and out[1, 1] == -1 and 0 < out[2, 1] < 1e-30 and out[2, 2] > 1e30
     assert (out[:2, 3:5] == 0).all() and (out[2, 3:5] == 1).all() and (out[:2, 5] == x[5]).all()

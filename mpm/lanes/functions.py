@@ -1,5 +1,6 @@
 """Exponential and logarithm over lanes, to a few ulp: polynomials after the power of two is taken off. No library is called.
 
+logarithm(x)  normal x > 0; elsewhere no number to rely on, but NaN stays NaN
 log1p(x)      x > -1 and below 2^1000 (float32: 2^120); elsewhere no number to rely on, but NaN stays NaN
 expm1(x)      any x; below -700 (float32: -85) -1, above 700 (85) what that gives
 exponential(x) the same, exp(x) itself precise where it is small
@@ -92,12 +93,24 @@ def log1p_lanes(x, most):
     one = like(x, 1.0)
     k = exponent(one + x)
     shrink = power(-k)
-    f = as_written(x, shrink, as_written(shrink, one, -one))  # (1 + x)/2^k - 1, rounded once; x itself where k = 0
+    return from_one(k, as_written(x, shrink, as_written(shrink, one, -one)))  # (1 + x)/2^k - 1, rounded once; x itself where k = 0
+
+
+@kernel(inline=True)
+def logarithm_lanes(x, most):
+    one = like(x, 1.0)
+    k = exponent(x)
+    return from_one(k, as_written(x, power(-k), -one))
+
+
+@kernel(inline=True)
+def from_one(k, f):
+    """k ln 2 + log(1 + f) of a small f."""
     g = felt(f)
     s = g / (2.0 + g)
     z = s * s
     half = 0.5 * g * g
-    return fma(k, like(x, LN2), f - (half - s * (half + z * polynomial(z, LOGARITHM))))
+    return fma(k, like(k, LN2), f - (half - s * (half + z * polynomial(z, LOGARITHM))))
 
 
 @kernel(inline=True)
@@ -125,6 +138,10 @@ def exponential_lanes(x, most):
     return fma(scale, p, scale)
 
 
+def logarithm(x):
+    return np.log(x)
+
+
 def log1p(x):
     return np.log1p(x)
 
@@ -148,6 +165,7 @@ def generic(function, lanes, number, double, single):
         return lambda x: lanes(x, most)
 
 
+generic(logarithm, logarithm_lanes, math.log, 2.0**1000, 2.0**120)
 generic(log1p, log1p_lanes, math.log1p, 2.0**1000, 2.0**120)
 generic(expm1, expm1_lanes, math.expm1, 700.0, 85.0)
 generic(exponential, exponential_lanes, math.exp, 700.0, 85.0)

@@ -8,12 +8,12 @@ import math
 from typing import Any, NamedTuple
 
 from mpm.jit import kernel
-from mpm.lanes import EIGHT, absolute, below, item, like, most, put
+from mpm.lanes import absolute, below, choose, exponential, like, logarithm, maximum, minimum, most, precision, sqrt
 from mpm.materials.ellipse import admissible, excess, excess_lanes, invariants, pressures, slowness, strains
 from mpm.materials.roles import aspects, flow, flow_lanes, moduli, value, values
 
 MOST = 200  # steps; 72 is the most seen
-FAR = 1e150  # stands for T = inf, and its inverse for T = 0, where a bracket is halved
+FAR, FARTHEST = 1e150, 1e30  # stand for T = inf, and their inverses for T = 0, where a bracket is halved
 
 
 class EllipseClipped(NamedTuple):
@@ -31,20 +31,23 @@ class EllipseClipped(NamedTuple):
 @kernel(inline=True)
 def angle(T):
     """cos and sin of atan T, each to round-off of its own."""
-    if T <= 1.0:
-        c = 1.0 / math.sqrt(1.0 + T * T)
-        return c, T * c
-    u = 1.0 / T
-    s = 1.0 / math.sqrt(1.0 + u * u)
-    return u * s, s
+    one = like(T, 1.0)
+    flat = below(T, one)
+    t = choose(flat, T, one / T)
+    near = one / sqrt(one + t * t)
+    return choose(flat, near, t * near), choose(flat, t * near, near)
 
 
 @kernel(inline=True)
 def balance(T, P, Q, p0, omega, w1, w2):
-    """The two sides a, b of the equation in T, their slopes in ln T, and c, s, y, z = P - p/M. No difference of nearly equal numbers."""
+    """The two sides a, b of the equation in T, their slopes in ln T, and c, s, y, z = P - p/M. No difference of nearly equal numbers.
+
+    Of numbers or of lanes.
+    """
     c, s = angle(T)
-    shear = (Q - 1.0) + c * c / (1.0 + s) if s > 0.7 else Q - s
-    press = p0 * ((P / p0 - 1.0) + s * s / (1.0 + c)) if c > 0.7 else P - p0 * c
+    steep = like(T, 0.7)
+    shear = choose(below(steep, s), (Q - 1.0) + c * c / (1.0 + s), Q - s)
+    press = choose(below(steep, c), p0 * ((P / p0 - 1.0) + s * s / (1.0 + c)), P - p0 * c)
     N = w1 * p0 * p0 * c * c + w2
     dN = -2.0 * w1 * p0 * p0 * c * c * s * s
     y, z = (w1 * p0 * P * c + w2) / N, w2 * press / N
@@ -126,23 +129,67 @@ def flow_clipped(law, elastic, e1, e2, e3, thermal, theta, dt):
 
 
 @kernel(inline=True)
+def between(low, high):
+    """The middle of a bracket, by ratio, over lanes; FAR is beyond float32, FARTHEST within."""
+    return sqrt(maximum(low, like(low, 1.0 / FARTHEST))) * sqrt(minimum(high, like(low, FARTHEST)))
+
+
+@kernel(inline=True)
+def tangent_lanes(P, Q, p0, omega, w1, w2, active):
+    """`tangent` over the lanes where `active` is 1, and 1 where it converged: (T, converged)."""
+    one, nought = like(P, 1.0), like(P, 0.0)
+    r = P / p0
+    low = choose(below(r, one), sqrt(absolute((1.0 - r) * (1.0 + r))) / r, nought)
+    high = choose(below(Q, one), Q / sqrt(absolute((1.0 - Q) * (1.0 + Q))), like(P, FARTHEST))
+    T = Q / r
+    for n in range(1, MOST):
+        T = choose(below(low, T) * below(T, high), T, between(low, high))
+        a, b, da, db, _, _, _, _, _ = balance(T, P, Q, p0, omega, w1, w2)
+        g = a - b
+        active = active * below(precision(T) * (absolute(a) + absolute(b)), absolute(g))
+        low, high = choose(active * below(nought, g), T, low), choose(active * below(g, nought), T, high)
+        new = -one  # outside every bracket: halve it
+        if n % 12 != 0:
+            ratio, slope = a / b, db / b - da / a
+            log = logarithm(choose(below(nought, ratio), ratio, one)) / slope
+            new = choose(below(nought, a) * below(nought, b) * below(nought, slope), T * exponential(log), new)  # Newton on ln(a/b) in ln T
+            inside = below(low, new) * below(new, high)
+            new = choose((one - inside) * below(da, db), T + T * (g / (db - da)), new)
+        new = choose(below(low, new) * below(new, high), new, between(low, high))
+        step = absolute(new - T)
+        T = choose(active, new, T)
+        active = active * below(50.0 * precision(T) * T, step)
+        if most(active) < 0.5:
+            break
+    return T, one - active
+
+
+@kernel(inline=True)
 def clipped_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
-    """`strain_clipped` over lanes: see flow_lanes (mpm.materials.roles). Those that flow go one by one: a bracketed root takes each its own steps."""
+    """`strain_clipped` over lanes: see flow_lanes (mpm.materials.roles)."""
     good, K = admissible(M, p0, eta), lam + 2.0 / 3.0 * mu
+    one, nought = like(trace, 1.0), like(trace, 0.0)
     p, q = pressures(trace, deviator, K, mu, thermal)
-    outside = good * below(like(trace, 0.0), excess_lanes(absolute(p) / (p0 * M), q / M))
-    share, lost, flowed = like(trace, 1.0), like(trace, 0.0), like(trace, 0.0)
-    if most(outside) > 0.5:
-        for k in range(EIGHT):
-            if item(outside, k) > 0.5:
-                bulk, shear, size = item(K, k), item(mu, k), item(q, k)
-                mapped, left, dp, dq, steps = map_clipped(item(p, k), size, bulk, shear, item(M, k), item(p0, k), item(eta, k), dt)
-                work = mapped * dp / bulk + left * dq / (3.0 * shear)
-                if steps == MOST or not math.isfinite(float(work / item(M, k))):
-                    good = put(good, k, 0.0)
-                elif steps > 0:
-                    trace = put(trace, k, (item(thermal, k) - mapped) / bulk)
-                    share, lost, flowed = put(share, k, left / size if size > 0.0 else 0.0), put(lost, k, work), put(flowed, k, 1.0)
+    P, Q, x = absolute(p) / M, q / M, eta / (K * dt)
+    flowed = good * below(nought, excess_lanes(P / p0, Q))
+    share, lost = one, nought
+    if most(flowed) > 0.5:
+        moves = flowed * below(nought, P) * below(x, like(x, FARTHEST))  # else only shear is clipped
+        turns = moves * below(nought, Q)
+        two = one + one
+        P, Q, p0 = choose(flowed, P, two), choose(flowed, Q, two), choose(flowed, p0, one)
+        x, omega = choose(moves, x, one), choose(flowed, K / (3.0 * mu), one)
+        w1, w2 = x / (1.0 + x), one / (1.0 + x)
+        T, converged = tangent_lanes(choose(turns, P, two), choose(turns, Q, two), p0, omega, w1, w2, turns)
+        _, _, _, _, c, s, y, z, shear = balance(choose(turns, T, nought), P, Q, p0, omega, w1, w2)
+        sign = choose(below(p, nought), -M, M)
+        mapped = choose(moves, sign * p0 * y * c, p)
+        fallen = choose(moves, sign * maximum(z, nought), nought)
+        left = choose(moves, M * s, minimum(q, M))
+        lost = choose(flowed, mapped * fallen / K + left * choose(moves, M * maximum(shear, nought), q - left) / (3.0 * mu), nought)
+        good = good * converged * below(lost / M, like(lost, 1e37))
+        trace = choose(flowed, (thermal - mapped) / K, trace)
+        share = choose(flowed, choose(below(nought, q), left / q, nought), one)
     return trace, share, lost, flowed, good
 
 
