@@ -6,9 +6,10 @@ from mpm.scene.inventory import output_bytes, physics
 
 NS_PARTICLE_STEP = {1: 60, 2: 120, "axisymmetric": 130, 3: 220}  # with flow and heat; `mpm bench CONFIG` measures
 LEAST = {"rigid": 1e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included: the left ends of docs/chart_robin_slab.png, chart_hencky_bar.png
-BYTES_PARTICLE = {1: 200, 2: 350, "axisymmetric": 390, 3: 880}  # at the peak, which is where particles are cut and weighed
-BYTES_NODE = 80
-BYTES_PROCESS = {"point": 175_000_000, "moving": 186_000_000, "rigid": 200_000_000}  # interpreter, packages, kernels from the cache
+BYTES_PARTICLE = {1: 200, 2: 350, "axisymmetric": 390, 3: 754}  # at the peak, which is where particles are cut and weighed
+BYTES_NODE = 30
+BYTES_LATER = 153_000_000  # of a moving process once its kernels are loaded, when particles take the most
+BYTES_PROCESS = {"point": 195_000_000, "moving": 205_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
 
 
 MOST_UNKNOWNS = 2_000_000
@@ -34,7 +35,7 @@ def memory(experiment) -> int:
     if not experiment.moving:
         return estimate_rigid(experiment)["memory_bytes"] + fields
     nodes = math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)
-    return BYTES_PROCESS["moving"] + particles * BYTES_PARTICLE[experiment.grid.dimension] + nodes * BYTES_NODE + fields
+    return max(BYTES_PROCESS["moving"], BYTES_LATER + particles * BYTES_PARTICLE[experiment.grid.dimension] + nodes * BYTES_NODE) + fields
 
 
 def memory_at_most(experiment) -> int:
