@@ -133,8 +133,7 @@ def _(locking, space, x, first, chunk, count, dt):
 
 @relax.register(Average)
 def _(locking, space, x, first, chunk, count, dt):
-    D = directions(space)
-    at, unused = np.empty(CHUNK), np.empty((D, CHUNK))
+    D, at, unused = directions(space), chunk.e[0], chunk.S[0]  # rows that are filled after this: what passes over a chunk makes no arrays
     gather_scalar(space, x, first, count, locking.change, at, unused, unused)
     for p in range(count):
         stretch = math.expm1((math.log1p(at[p]) - math.log1p(grown(space, x, first + p, chunk, p, dt))) / D)
