@@ -20,7 +20,7 @@ from mpm.jit import kernel
 from mpm.lanes import fma, load8, most, splat8
 from mpm.runner import run_point
 from mpm.scene.build import build
-from mpm.simulation import Clock, advance_block, warm_bodies, work_arrays
+from mpm.simulation import BLOCK, BLOCK_WORK, Clock, advance_block, warm_bodies, work_arrays
 from mpm.sweep.cases import plan
 from mpm.transfer import CHUNK, collect, lay_down, new_chunk, spread
 
@@ -117,7 +117,7 @@ class Bench:
         self.now = limits(self.scene.space, directions(self.scene.space), self.scene.bodies, self.clock.reports)
         self.dt = (self.scene.step or self.now.step() * self.scene.safety) / 4
         self.particles = sum(len(body.particles.m) for body in self.scene.bodies)
-        self.block = max(1, min(32, 200_000 // self.particles))
+        self.block = max(1, min(BLOCK, BLOCK_WORK // self.particles))  # as a run has them: the first step of a block scatters twice
 
     def steps(self) -> None:
         """A block of steps."""

@@ -95,7 +95,7 @@ def disc() -> dict:
     from mpm.rigid.geometry import geometry
 
     found: dict[str, list[float]] = {}
-    for cell in (0.75, 0.5, 0.375, 0.3, 0.25, 0.2, 0.15):
+    for cell in (0.75, 0.5, 0.375, 0.3, 0.25, 0.22, 0.2, 0.19, 0.18, 0.17, 0.16, 0.15):
         for tolerance in (1e-3, 1e-4, 1e-5, 1e-6):
             experiment = load(disc_config(cell, tolerance))
             error = run_point(experiment).finals["error_l2"]
