@@ -72,7 +72,7 @@ def rows(peers: Path | None, python: str | None, rounds: int, only: str):
         median = {key: statistics.median(one["med_ms"] / one["N"] for one in found) for key, found in lines.items()}
         checked = all(agree(lines["mpm"][0]["check"], found[0]["check"], found[0]["dtype"]) for found in lines.values())
         ratios = [f"{median[key] / median['mpm']:.2f} x" if key in median else "" for key in ("taichi", "warp")]
-        floors = " / ".join(f"{floor} x" if floor else "" for floor in (taichi_floor, warp_floor))
+        floors = " / ".join(f"{floor} x" for floor in (taichi_floor, warp_floor) if floor)
         size = lines["mpm"][0]["bytes_particle"]
         yield f"| {name} | {1e6 * median['mpm']:.1f} | {ratios[0]} | {ratios[1]} | {floors} | {size} | {'agree' if checked else 'DIFFER'} |"
 
