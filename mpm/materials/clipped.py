@@ -33,7 +33,7 @@ def angle(T):
     """cos and sin of atan T, each to round-off of its own."""
     one = like(T, 1.0)
     flat = below(T, one)
-    t = choose(flat, T, one / T)
+    t = choose(flat, T, one / maximum(one, T))  # no division by 0 in plain Python; in this order a NaN stays
     near = one / sqrt(one + t * t)
     return choose(flat, near, t * near), choose(flat, t * near, near)
 
