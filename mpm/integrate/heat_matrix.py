@@ -5,9 +5,9 @@
 Row r holds the entries (r, c), c not before r in raster order; a difference of node numbers (i, j, k) has the place (i W + j) W + k,
 W = 2 (nodes a direction) - 1.
 The factor has no entries beyond these places; where a pivot is not positive its diagonal is raised, doubling from SHIFT.
-Iterations a solution, disc of 16 cells a radius: Bi 10: 10 by the diagonal, 3 by this, in steps of 0.15 h^2, and 21, 6 in steps of 1.5 h^2;
-beta = inf (a penalty of 1000 kappa/h): 141, 13 and 296, 30 (a prototype on the matrices of mpm.study.surfaces, residual 1e-9). An iteration costs one
-product with the rows and two with the factor, and no passage over the particles.
+Iterations a solution (heat_iterations over heat_steps_implicit of a run), configs/studies/robin_cylinder.yaml as particles, 16 cells a radius: Bi 10: 3
+in steps of 0.15 h^2 and 6 in steps of 1.5 h^2; beta = inf (a penalty of 1000 kappa/h): 13 and 36. In a prototype the diagonal alone took 10, 21, 141 and 296.
+An iteration costs one product with the rows and two with the factor, and no passage over the particles.
 """
 
 import numpy as np

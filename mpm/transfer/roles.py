@@ -34,7 +34,7 @@ class Chunk(NamedTuple):
     U: np.ndarray  # (D, D, n) slope that it keeps; the same array as C where a scheme keeps that
     f: np.ndarray  # (D, n) impulse that acts on w (hoop stress)
     S: np.ndarray  # (D, D, n) impulse that acts on grad(w) (stress), scaled so that with the MLS gradient it adds to the slope
-    e: np.ndarray  # (12, n) trial strain tensor, then its values and two axes; rows of integrate/strain.py
+    e: np.ndarray  # (12, n) trial strain tensor, and what the response of a particle needs beside it; rows of integrate/strain.py and react.py
     place: np.ndarray  # (D, n) positions
     s: np.ndarray  # (D, ROWS, n) quadratic stencils (stencils.py)
     reach: np.ndarray  # (D, 2) nodes that a gather touches
@@ -119,7 +119,8 @@ def new_chunk(D, like, own_gradient, own_velocity):
     """Scratch for D directions in the precision of `like`; with a gradient that is not the slope, a kept velocity that is not the gathered one.
 
     All of it from one pool, every array at the start of a cache line and APART lines more from the one before: else loads of eight numbers cross
-    lines and equal rows of two arrays lie multiples of 4096 bytes apart, which costs 68 ns a particle-step, not 56 (3-D, float64, four phases).
+    lines, and equal rows of two arrays lie multiples of 4096 bytes apart: `mpm bench --dtype f64` then took 68 to 85 ns a particle-step from process to
+    process, with this 69 to 73.
     """
     line = 64 // like.itemsize
     wide = (8 if own_gradient else 4) * D + 4
