@@ -19,7 +19,7 @@ from mpm_cli.schema import schema
 from mpm_cli.stability import stability
 from mpm_cli.status import status
 from mpm_cli.sweep import sweep
-from mpm_cli.talk import internal, warn
+from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
@@ -49,6 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
         warn(f"{usage}error: {error.format_message()}" if usage else error.format_message())
         return 2
     except (KeyboardInterrupt, typer.Abort):
+        leave_at_once()
         warn("stopped")
         return 130
     except BrokenPipeError:  # the reader of our output left, as `head` does

@@ -5,7 +5,7 @@ from pathlib import Path
 import typer
 from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, Threads, load
 from mpm_cli.progress import Single
-from mpm_cli.talk import document, say
+from mpm_cli.talk import document, leave_at_once, say
 
 
 def run(
@@ -39,7 +39,9 @@ def run(
         progress.close()
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "run.nc", seal(data, record.line))
-    if not progress.stopped:
+    if progress.stopped:
+        leave_at_once()
+    else:
         keeper.drop()
     progress.finished(experiment.name, record)
     if progress.stopped and keeper.there:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import typer
 from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, amount, limit, load
 from mpm_cli.progress import reporter
-from mpm_cli.talk import document, internal, say, warn
+from mpm_cli.talk import document, internal, leave_at_once, say, warn
 
 RERUN = ("failed", "stale", "all")
 
@@ -73,6 +73,8 @@ def sweep(
         jobs, timeout, retries, time_budget, failures, rerun, smoke, scheduler=scheduler, shared=results == "shared", memory=memory, checkpoint=every
     )
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
+    if result.hurried:
+        leave_at_once()
     picture = draw(result)
     if as_json:
         document(summary(result, picture))

@@ -2,8 +2,11 @@
 
 import json
 import math
+import os
+import signal
 import sys
 import tempfile
+import threading
 import traceback
 from typing import Any
 
@@ -42,3 +45,10 @@ def internal(error: Exception, what: str) -> None:
     with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8") as file:
         traceback.print_exception(error, file=file)
     warn(f"{what}: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
+
+
+def leave_at_once() -> None:
+    """The command was told to stop and has done what it had to: whoever tells it again finds it gone, without a word from an interpreter that is ending."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+        signal.signal(signal.SIGTERM, lambda *_: os._exit(143))

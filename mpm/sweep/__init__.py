@@ -7,7 +7,7 @@ engine     hands out points, hears of them, retries, keeps the clock; knows no p
 executors  where points run: the interface, and `Serial`; `processes` has workers on this machine (`worker`), `cluster` has Dask's (`local`, `remote`)
 room       memory and disk that points may take; `tally`: which are missing, and how they are counted
 store      the folder of a sweep: points by id (`lines`: their summaries), what it holds, one writer; `collect` makes sweep.nc of it (`table`, `over`,
-           `align`, `coordinates`; `shards` where it would be too large)
+           `align`, `coordinates`; `shards` where it would be too large), `gather` does so while it runs, beside it where that is much
 status, compare, outlook   what is there; same or not; what would be done
 
 The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.

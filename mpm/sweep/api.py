@@ -16,12 +16,12 @@ from mpm.records.checkpoint import EVERY, Checkpoint
 from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Result
+from mpm.sweep.gather import Gather, NotCollected
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
+from mpm.sweep.room import output
 from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, counts, exit_code
-
-QUICK = 200  # points that are collected even when told to leave at once
 
 
 def default_out(experiment: Any) -> Path:
@@ -68,61 +68,63 @@ def execute(
         for run_id in damaged:
             reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
 
-        def gather() -> bool:
-            from mpm.sweep.collect import collect
-
-            return collect(store, plan, store.experiment(), lines)
-
-        supervisor = Engine(store, points, lines, options, reporter, partial(gather, reporter))
+        gather = Gather(store, plan, lines, bytes_of(plan), reporter.note)
+        supervisor = Engine(store, points, lines, options, reporter, gather)
         reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in supervisor.due), options.jobs)
-        try:
-            if supervisor.due:
-                if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due[0]].experiment):
-                    reporter.note(warning)
-                run_engine(supervisor, options)
-        finally:
-            reporter.close()
-        hurried = supervisor.signals > 0  # two seconds are left at most, and the next sweep collects too
-        collected = gather() if supervisor.signals < 2 and (not hurried or len(lines) < QUICK) else False
+        with signals(supervisor.signal):
+            try:
+                if supervisor.due:
+                    if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due[0]].experiment):
+                        reporter.note(warning)
+                    run_engine(supervisor, options)
+            finally:
+                reporter.close()
+                gather.close()
+            collected = collect_last(gather, supervisor)
     found = counts(points, lines, skipped(plan))
     stopped = supervisor.broken or supervisor.stopped
     if supervisor.broken:
         reporter.note(supervisor.broken)
-    return Result(store.out, lines, found, supervisor.ran, stopped, exit_code(found, supervisor.stopped), time.monotonic() - began, collected, hurried)
+    code, hurried = exit_code(found, supervisor.stopped), supervisor.signals > 0
+    return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried)
 
 
-def partial(gather: Callable[[], bool], reporter: Reporter) -> Callable[[], None]:
-    """Collect while running: trouble with the disk is told, and the sweep goes on."""
+def bytes_of(plan: Any) -> int:
+    """Bytes that a point writes, about; of a plan without points 0."""
+    return output(plan.cases[0].experiment) if plan.cases else 0
 
-    def attempt() -> None:
-        try:
-            gather()
-        except OSError as error:
-            reporter.note(f"cannot collect yet: {error.filename}: {error.strerror}")
 
-    return attempt
+def collect_last(gather: Gather, supervisor: Engine) -> bool:
+    """The dataset at the end: whether it was written. Told to leave there are two seconds at most, and the next sweep collects too."""
+    heard = supervisor.signals
+    if heard > 1 or (heard and not gather.quick):
+        return False
+    try:
+        return gather.last(lambda: supervisor.signals > heard)
+    except NotCollected as error:
+        supervisor.stopped, supervisor.broken = supervisor.stopped or "broken", str(error)
+        return False
 
 
 def run_engine(supervisor: Engine, options: Options) -> None:
-    """Workers, and signals while they work. `jobs=0` runs the points in this process."""
+    """Workers for what is due. `jobs=0` runs the points in this process."""
     from mpm.sweep.executors import Serial
     from mpm.sweep.processes import Processes
 
-    with signals(supervisor.signal):
-        if not supervisor.any_can_run():
-            return
-        if options.jobs == 0:
-            supervisor.run(Serial(options.runner, supervisor.heed))
-            return
-        ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
-        first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead or options.scheduler else None
-        if options.scheduler:
-            from mpm.sweep.cluster import Cluster
+    if not supervisor.any_can_run():
+        return
+    if options.jobs == 0:
+        supervisor.run(Serial(options.runner, supervisor.heed))
+        return
+    ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
+    first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead or options.scheduler else None
+    if options.scheduler:
+        from mpm.sweep.cluster import Cluster
 
-            out, memory = supervisor.store.out.resolve(), supervisor.room.limit
-            supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, out, options.jobs, memory))
-            return
-        supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.room.limit))
+        out, memory = supervisor.store.out.resolve(), supervisor.room.limit
+        supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, out, options.jobs, memory))
+        return
+    supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.room.limit))
 
 
 @contextlib.contextmanager

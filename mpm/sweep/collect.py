@@ -22,16 +22,23 @@ from mpm.sweep.table import Table
 
 def collect(store: Store, plan: Any, about: dict, lines: Lines) -> bool:
     """Write sweep.nc unless it holds just this already; whether it was written. `about` is experiment.json."""
+    digest = due(store, about, lines)
+    if not digest:
+        return False
+    data, outside = assemble(store, plan, about, lines)
+    write_whole(store.dataset, seal(data, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {})))
+    return True
+
+
+def due(store: Store, about: dict, lines: Lines) -> str:
+    """The fingerprint of the dataset to write; empty where it is there."""
     digest = fingerprint(about, lines)
     try:
         old = summary(store.dataset)
     except DamagedFile:
         old = None  # a dataset is made anew from the points, whatever it was
-    if old is not None and old.get("digest") == digest and all((store.out / file).exists() for file in old.get("files", ())):
-        return False
-    data, outside = assemble(store, plan, about, lines)
-    write_whole(store.dataset, seal(data, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {})))
-    return True
+    there = old is not None and old.get("digest") == digest and all((store.out / file).exists() for file in old.get("files", ()))
+    return "" if there else digest
 
 
 def fingerprint(about: dict, lines: Lines) -> str:

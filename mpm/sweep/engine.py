@@ -12,7 +12,7 @@ Stopping  by Ctrl-C, SIGTERM, the time budget or too many failures: what runs ha
 import math
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +20,7 @@ from mpm.records.checkpoint import EVERY
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
 from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
+from mpm.sweep.gather import Gather
 from mpm.sweep.pace import Pace
 from mpm.sweep.report import Reporter, label
 from mpm.sweep.room import ADVICE, Room
@@ -27,7 +28,6 @@ from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, missing
 
 POLL = 0.2  # s
-COLLECT = 30.0  # least seconds between two datasets while running; 20 times the cost of one, if that is more
 LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stopped
 GRACE = 2.0  # s that a point over its time has to stop by itself
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
@@ -88,9 +88,9 @@ class Running:
 class Engine:
     """One pass over the points that are due."""
 
-    def __init__(self, store: Store, points: Points, lines: dict[str, dict], options: Options, reporter: Reporter, partial: Callable[[], None]):
+    def __init__(self, store: Store, points: Points, lines: dict[str, dict], options: Options, reporter: Reporter, gather: Gather | None = None):
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
-        self.partial = partial  # collects what is there; called now and then
+        self.gather = gather  # collects what is there, now and then
         self.due: deque[str] = deque(missing(points, lines, options.rerun))
         if options.rerun == "all":
             store.forget(self.due)
@@ -101,8 +101,7 @@ class Engine:
         self.failures = self.ran = self.signals = 0
         self.stopped = self.broken = ""
         self.asked = math.nan  # when all that runs was asked to leave
-        self.began = self.collected = time.monotonic()
-        self.cost = 0.0
+        self.began = time.monotonic()
         self.executor: Executor | None = None
         self.room = Room(store.out, options.memory, far=options.scheduler not in (None, "local"))
 
@@ -136,6 +135,8 @@ class Engine:
             self.asked = time.monotonic()
             for task in self.running:
                 executor.cancel(task, "cancel")
+            if self.gather is not None and self.signals:
+                self.gather.prepare()
         return self.signals > 1 or time.monotonic() - self.asked > LEAVE
 
     def hand_out(self, executor: Executor) -> bool:
@@ -286,7 +287,5 @@ class Engine:
                 at.asked = math.inf
                 self.executor.kill(task, "")
         self.reporter.beat({task: at.fraction for task, at in self.running.items()})
-        if clock - self.collected > max(COLLECT, 20 * self.cost) and self.ran:
-            self.partial()
-            self.collected = time.monotonic()
-            self.cost = self.collected - clock
+        if self.gather is not None and self.ran:
+            self.gather.now_and_then()

@@ -52,19 +52,24 @@ class Child:
 
     def last_words(self) -> str:
         """How the process ended, and the last line it printed."""
-        code = self.process.wait()
-        if code < 0:
-            name = signal.Signals(-code).name
-            return f"worker ended by signal {-code} ({name}{', perhaps for want of memory' if name == 'SIGKILL' else ''})"
-        self.log.seek(max(0, self.log.seek(0, os.SEEK_END) - 4000))
-        lines = [line for line in self.log.read().decode(errors="replace").splitlines() if line.strip()]
-        said = re.sub(r"[^\x20-\x7e\u00a0-\uffff]", "?", lines[-1].strip())[:300] if lines else "without a word"
-        return f"worker ended with code {code}: {said}"
+        return ended("worker", self.process, self.log)
 
     def close(self) -> None:
         """Release what the parent holds."""
         self.pipe.close()
         self.log.close()
+
+
+def ended(who: str, process: subprocess.Popen, log: Any) -> str:
+    """How a process ended, and the last line that it left in its log."""
+    code = process.wait()
+    if code < 0:
+        name = signal.Signals(-code).name
+        return f"{who} ended by signal {-code} ({name}{', perhaps for want of memory' if name == 'SIGKILL' else ''})"
+    log.seek(max(0, log.seek(0, os.SEEK_END) - 4000))
+    lines = [line for line in log.read().decode(errors="replace").splitlines() if line.strip()]
+    said = re.sub(r"[^\x20-\x7e\u00a0-\uffff]", "?", lines[-1].strip())[:300] if lines else "without a word"
+    return f"{who} ended with code {code}: {said}"
 
 
 class Processes:

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
-from mpm.sweep.api import folder_plan, run_engine
+from mpm.sweep.api import bytes_of, collect_last, folder_plan, run_engine, signals
 from mpm.sweep.engine import Engine, Options, Points
+from mpm.sweep.gather import Gather
 from mpm.sweep.lock import Lock, Refused
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import BATCH, Store
@@ -98,7 +99,7 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
         if any(one["what"] == "dataset" for one in found.damaged):
             found.stopped = "`mpm run` makes run.nc again"
         return
-    store, plan, about, _, _ = folder_plan(out)
+    store, plan, *_ = folder_plan(out)
     points = Points.of(plan)
     names = [Path(one["file"]).stem if one["what"] == "point" else BATCH + Path(one["file"]).stem for one in found.damaged if one["what"] in ("point", "batch")]
     there = store.places(list(points.cases))
@@ -110,17 +111,16 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
     store = Store(out)
     lines, _ = store.lines(list(points.cases))
     found.due = [run_id for run_id in points.cases if run_id not in lines and (run_id in held or unsaid)]
-    if found.due:
-        supervisor = Engine(store, points, lines, options, reporter, lambda: None)
-        supervisor.due.clear()
-        supervisor.due.extend(found.due)
-        run_engine(supervisor, options)
-        found.ran = sum(run_id in lines for run_id in found.due)
-        found.stopped = supervisor.broken or supervisor.stopped
-    if not found.stopped:
-        from mpm.sweep.collect import collect
-
-        collect(store, plan, about, lines)
+    supervisor = Engine(store, points, lines, options, reporter)
+    supervisor.due.clear()
+    supervisor.due.extend(found.due)
+    with signals(supervisor.signal):
+        if found.due:
+            run_engine(supervisor, options)
+            found.ran = sum(run_id in lines for run_id in found.due)
+        if not supervisor.stopped:
+            collect_last(Gather(store, plan, lines, bytes_of(plan), reporter.note), supervisor)
+    found.stopped = supervisor.broken or supervisor.stopped
 
 
 def aside(out: Path, one: dict) -> None:

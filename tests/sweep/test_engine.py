@@ -246,7 +246,7 @@ def test_ctrl_c_leaves_checkpoints_and_the_same_command_goes_on_from_them(config
 
 
 def test_a_dataset_of_what_is_there_while_running(config, tmp_path, monkeypatch):
-    monkeypatch.setattr("mpm.sweep.engine.COLLECT", 0.0)
+    monkeypatch.setattr("mpm.sweep.gather.EVERY", 0.0)
     seen = []
 
     class Eyes(Reporter):
