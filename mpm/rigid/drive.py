@@ -139,17 +139,17 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
         method.accept()
         before, state, count = state, method.state, count - 1
         new = end if count == 0 else t + dt
-        last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
-        if last > first:
+        if first < len(ahead) and ahead[first] <= new * (1 + 1e-14):
+            last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
             basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
             record(trace, watch, method, before + basis @ columns, exchanged, weight)
             first = last
-        last = int(np.searchsorted(watch.shots[0], new * (1 + 1e-14), side="right"))
-        if last > shown:
+        if shown < len(watch.shots[0]) and watch.shots[0][shown] <= new * (1 + 1e-14):
+            last = int(np.searchsorted(watch.shots[0], new * (1 + 1e-14), side="right"))
             basis, columns, _ = method.dense((np.minimum(watch.shots[0][shown:last], new) - t) / dt)
             trace.shots += [interpolate(*watch.shots[1:], method.temperature(shot)) for shot in before + basis @ columns]
             shown = last
-        now = interpolate(*watch.probes, method.temperature(state))
+        now = interpolate(*watch.probes, method.temperature(state)) if watch.thresholds else seen
         for k, (probe, level) in enumerate(watch.thresholds):
             if math.isnan(trace.crossings[k]) and (seen[probe] - level) * (now[probe] - level) <= 0:
                 trace.crossings[k] = crossing(method, watch, before, t, dt, probe, level)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mpm.rigid.nodes import Nodes, assemble, evaluate, make_nodes
+from mpm.jit import kernel
+from mpm.rigid.nodes import Nodes, apply, assemble, evaluate, make_nodes
 
 ORDER = 4  # products of two quadratic splines, exact
 
@@ -40,10 +41,8 @@ def evaluated(nodes: Nodes, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def row_sums(stencil: np.ndarray, diff: np.ndarray) -> np.ndarray:
     """A 1 for a symmetric stencil."""
-    total = stencil[0].copy()
-    for s, k in zip(stencil[1:], diff[1:], strict=True):
-        total += s
-        total[k:] += s[:-k]
+    total = np.empty(stencil.shape[1])
+    apply(stencil, diff, np.ones(stencil.shape[1]), total)
     return total
 
 
@@ -80,9 +79,23 @@ def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sid
 
 def middles(volume) -> np.ndarray:
     """One quadrature point a cell: the one nearest to the mean of the cell's points."""
-    cell, key = np.unique(volume.cell, return_inverse=True)
-    number = np.bincount(key)
-    mean = np.stack([np.bincount(key, weights=c) / number for c in volume.x.T], axis=-1)
-    far = ((volume.x - mean[key]) ** 2).sum(1)
-    order = np.lexsort((far, key))
-    return order[np.searchsorted(key[order], np.arange(len(cell)))]
+    return nearest_to_mean(volume.x, volume.cell)
+
+
+@kernel
+def nearest_to_mean(x, cell):
+    """Number of that point of x (Q, d), by rising cell (Q,)."""
+    cells, d = np.max(cell) + 1, x.shape[1]
+    mean, number, best = np.zeros((cells, d)), np.zeros(cells, dtype=np.int64), np.full(cells, -1)
+    for q in range(len(cell)):
+        number[cell[q]] += 1
+        for k in range(d):
+            mean[cell[q], k] += x[q, k]
+    nearest = np.empty(cells)
+    for q in range(len(cell)):
+        far = 0.0
+        for k in range(d):
+            far += (x[q, k] - mean[cell[q], k] / number[cell[q]]) ** 2
+        if best[cell[q]] < 0 or far < nearest[cell[q]]:
+            best[cell[q]], nearest[cell[q]] = q, far
+    return best[number > 0]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import kernel, role
-from mpm.rigid.band import back_substitute, factorise, fill
+from mpm.rigid.band import back_substitute, factorise, fill, make_band
 from mpm.rigid.nodes import apply
 
 MOST, SHIFT = 1000, 1e-3
@@ -21,7 +21,8 @@ MOST, SHIFT = 1000, 1e-3
 class Factor(NamedTuple):
     """Band Cholesky."""
 
-    band: np.ndarray  # (N, b + 1)
+    band: np.ndarray  # mpm.rigid.band.make_band
+    reach: int  # numbers below the diagonal
 
 
 class Gradients(NamedTuple):
@@ -37,7 +38,7 @@ class Gradients(NamedTuple):
 
 
 def make_factor(diff, size: int) -> Factor:
-    return Factor(np.empty((size, int(diff[-1]) + 1)))
+    return Factor(make_band(size, int(diff[-1])), int(diff[-1]))
 
 
 def make_gradients(diff, size: int, tolerance: float) -> Gradients:
@@ -62,12 +63,12 @@ def invert(solver, x, guess):
 @prepare.register(Factor)
 def _(solver, diff, a, first, b, second, idle, sums):
     fill(solver.band, diff, a, first, b, second, idle)
-    return factorise(solver.band) < 0
+    return factorise(solver.band, a.shape[1], solver.reach) < 0
 
 
 @invert.register(Factor)
 def _(solver, x, guess):
-    back_substitute(solver.band, x)
+    back_substitute(solver.band, solver.reach, x)
 
 
 @prepare.register(Gradients)

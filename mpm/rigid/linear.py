@@ -37,17 +37,18 @@ class Problem(NamedTuple):
 
 
 @kernel
-def stages(problem, solver, a, error, dt, u, supply, received, k, flux):
+def stages(problem, solver, a, error, filters, dt, u, supply, received, k, flux):
     """Stage slopes k (m, N), guessed from those of the last step, and the exchange rate of each stage, by a solver of M + gamma dt A.
 
-    Returns the square of the filtered error's mass norm."""
+    Returns the square of the mass norm of the error, filtered so many times."""
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
     for i in range(m):
-        for p in range(n):
-            y[p] = u[p]
-            for j in range(i):
-                y[p] += dt * a[i, j] * k[j, p]
+        y[:] = u
+        for j in range(i):
+            f = dt * a[i, j]
+            for p in range(n):
+                y[p] += f * k[j, p]
         apply(problem.matrix, problem.diff, y, work)
         for p in range(n):
             work[p] = supply[i, p] - work[p]
@@ -66,16 +67,17 @@ def stages(problem, solver, a, error, dt, u, supply, received, k, flux):
             for p in range(n):
                 if problem.weight[p] > 0.0:
                     k[i, p] += gap / whole
-    for p in range(n):
-        work[p] = 0.0
-        for i in range(m):
-            work[p] += dt * error[i] * k[i, p]
+    work[:] = 0.0
+    for i in range(m):
+        f = dt * error[i]
+        for p in range(n):
+            work[p] += f * k[i, p]
     square = 0.0
-    for turn in range(FILTERS + 1):
+    for turn in range(filters + 1):
         for p in range(n):
             y[p] = work[p]
         apply(problem.mass, problem.diff, y, work)
-        if turn < FILTERS:
+        if turn < filters:
             invert(solver, work, u * 0.0)
     for p in range(n):
         square += y[p] * work[p]
@@ -88,8 +90,9 @@ class LinearSteps:
     CARRIES = ("state", "q", "now", "slopes")
     radius = 0.0
 
-    def __init__(self, system, tolerance: float, order: int = 4, iterate: bool = False):
-        """system: mpm.rigid.system.System with constant laws; iterate: by conjugate gradients, not by a factorisation."""
+    def __init__(self, system, tolerance: float, order: int = 4, iterate: bool = False, checked: bool = True):
+        """system: mpm.rigid.system.System with constant laws; iterate: by conjugate gradients, not by a factorisation; checked: the error is looked at."""
+        self.filters = FILTERS if checked else 0
         self.system, self.tableau = system, TABLEAUS[order]
         shaped, capacity = system.geometry, system.density * system.alpha.constant
         matrix = system.kappa.constant * shaped.stiffness + system.exchange
@@ -142,7 +145,7 @@ class LinearSteps:
                 return np.inf
         k, flux = self.slopes.copy(), np.empty(len(tableau.a))
         supply, received = self.surroundings(dt)
-        square = stages(self.problem, self.solver, tableau.a, tableau.error, dt, self.state, supply, received, k, flux)
+        square = stages(self.problem, self.solver, tableau.a, tableau.error, self.filters, dt, self.state, supply, received, k, flux)
         if isinstance(self.solver, Gradients) and self.solver.count[0] < 0:
             self.solver.count[0] = 0
             return np.inf

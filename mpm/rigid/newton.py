@@ -13,7 +13,7 @@ import numpy as np
 
 from mpm.jit import kernel
 from mpm.rigid.around import radiate_slope
-from mpm.rigid.band import back_substitute, factorise
+from mpm.rigid.band import back_substitute, factorise, make_band
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.sdirk import TABLEAUS
 from mpm.rigid.tables import look_up
@@ -30,9 +30,7 @@ def jacobian(problem, band, h, dt, slope):
     look_up(problem.table, h, theta, potential, slope, conductance)
     for i in range(n):
         root[i] = np.sqrt(max(conductance[i], 0.0) / slope[i])
-    for i in range(n):
-        for k in range(band.shape[1]):
-            band[i, k] = 0.0
+    band[:] = 0.0
     for o in range(len(problem.on_theta)):
         k = problem.diff[o]
         for i in range(n - k):
@@ -55,7 +53,8 @@ class NewtonSteps(Enthalpy):
         super().__init__(system, tolerance)
         self.tableau = TABLEAUS[order]
         self.power = self.tableau.power
-        self.band = np.empty((len(self.state), int(self.problem.diff[-1]) + 1))
+        self.reach = int(self.problem.diff[-1])
+        self.band = make_band(len(self.state), self.reach)
         self.floor = FLOOR / self.diffusion if self.diffusion > 0 else 0.0
         self.iterations = 0
 
@@ -73,11 +72,11 @@ class NewtonSteps(Enthalpy):
             if size <= self.close * self.allowed:
                 return h, taken
             jacobian(problem, self.band, h, dt, slope)
-            if factorise(self.band) >= 0:
+            if factorise(self.band, len(h), self.reach) >= 0:
                 return None
             self.iterations += 1
             step = problem.mass * residual
-            back_substitute(self.band, step)
+            back_substitute(self.band, self.reach, step)
             step /= slope
             for halving in range(HALVINGS):
                 trial = h - step / 2**halving

@@ -6,13 +6,16 @@ A symmetric matrix is a stencil: S[o, i] = A[i, i + diff[o]] for the (5^d + 1)/2
 row by row. Directions are numbered so that the longest changes slowest: the band is then narrowest.
 """
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
 
 from mpm.jit import kernel
+from mpm.lanes import EIGHT, fma, load8, splat8, store
 
 SNAP = 1e-9  # of a cell: an overlap thinner than this makes no nodes of its own
+TOGETHER = 32  # points of a cell that assembly takes at a time
 
 
 class Nodes(NamedTuple):
@@ -32,6 +35,14 @@ class Nodes(NamedTuple):
         return int(np.prod(self.count))
 
 
+@functools.lru_cache
+def corners(d: int) -> np.ndarray:
+    """Offsets of the splines of a cell: 0, 1, 2 in each of d directions (3^d, 3)."""
+    local = np.zeros((3**d, 3), dtype=np.int64)
+    local[:, :d] = np.stack(np.meshgrid(*[np.arange(3)] * d, indexing="ij"), axis=-1).reshape(-1, d)
+    return local
+
+
 def make_nodes(lower, upper, h: float, origin) -> tuple[Nodes, list[np.ndarray]]:
     """Nodes that reach the box from `lower` to `upper`, and the knots (cell edges) of each direction."""
     d = len(lower)
@@ -43,8 +54,7 @@ def make_nodes(lower, upper, h: float, origin) -> tuple[Nodes, list[np.ndarray]]
     for k in np.argsort(count[:d], kind="stable"):
         stride[k] = step
         step *= count[k]
-    local = np.zeros((3**d, 3), dtype=np.int64)
-    local[:, :d] = np.stack(np.meshgrid(*[np.arange(3)] * d, indexing="ij"), axis=-1).reshape(-1, d)
+    local = corners(d)
     pair = (local[None] - local[:, None]) @ stride
     diff = np.unique(pair[pair >= 0])
     place = np.where(pair >= 0, np.searchsorted(diff, pair), -1)
@@ -60,57 +70,80 @@ def spline(f, n, dn, k):
 
 
 @kernel
+def products(n, dn, d, with_gradient, value, slope):
+    """Values (m,) and, where wanted, slopes (d, m) of the splines of a cell from those of each direction."""
+    a = 0
+    for i in range(3):
+        for j in range(3 if d > 1 else 1):
+            for k in range(3 if d > 2 else 1):
+                value[a] = n[0, i] * n[1, j] * n[2, k]
+                if with_gradient:
+                    slope[0, a] = dn[0, i] * n[1, j] * n[2, k]
+                    if d > 1:
+                        slope[1, a] = n[0, i] * dn[1, j] * n[2, k]
+                    if d > 2:
+                        slope[2, a] = n[0, i] * n[1, j] * dn[2, k]
+                a += 1
+
+
+@kernel
+def squares(y, m, v, scale, count):
+    """y (m, width) += sum_q scale_q v_q v_q^T over the first `count` rows of v (., width); m = 3, 9 or 27."""
+    width = y.shape[1]
+    for a in range(0, m, 3):
+        for b in range(0, width, EIGHT):
+            at = a * width + b
+            first, second, third = load8(y, at), load8(y, at + width), load8(y, at + 2 * width)
+            for q in range(count):
+                whole = load8(v, q * width + b) * scale[q]
+                first, second, third = fma(splat8(v[q, a]), whole, first), fma(splat8(v[q, a + 1]), whole, second), fma(splat8(v[q, a + 2]), whole, third)
+            store(y, at, first)
+            store(y, at + width, second)
+            store(y, at + 2 * width, third)
+
+
+@kernel
 def assemble(nodes, d, x, w, cell, counts, with_gradient, mass, stiffness):
     """Adds sum_q w N_i N_j to `mass` and, with gradients, sum_q w grad N_i . grad N_j to `stiffness` (stencils).
 
-    x (Q, d), w (Q,), cell (Q,) flat in C order over `counts` cells a direction. Consecutive points of one cell share an element matrix.
+    x (Q, d), w (Q,), cell (Q,) flat in C order over `counts` cells a direction. Consecutive points of one cell share an element matrix, TOGETHER at a time.
     """
     m = nodes.local.shape[0]
+    width = -(-m // EIGHT) * EIGHT  # rows of whole lanes
     n, dn = np.ones((3, 3)), np.zeros((3, 3))
-    value, slope = np.empty(m), np.empty((m, 3))
-    element, gradient = np.zeros((m, m)), np.zeros((m, m))
+    value, slope, scale, scales = np.zeros((TOGETHER, width)), np.zeros((TOGETHER * d, width)), np.empty(TOGETHER), np.empty(TOGETHER * d)
+    element, gradient = np.zeros((m, width)), np.zeros((m, width))
     at = np.zeros(3, dtype=np.int64)
-    last = np.int64(-1)
-    base = np.int64(0)
-    for q in range(len(w) + 1):
-        if q == len(w) or cell[q] != last:
-            if last >= 0:
-                for a in range(m):
-                    i = base + nodes.local[a, 0] * nodes.stride[0] + nodes.local[a, 1] * nodes.stride[1] + nodes.local[a, 2] * nodes.stride[2]
-                    for b in range(m):
-                        o = nodes.place[a, b]
-                        if o >= 0:
-                            mass[o, i] += element[a, b]
-                            if with_gradient:
-                                stiffness[o, i] += gradient[a, b]
-                        element[a, b] = 0.0
-                        gradient[a, b] = 0.0
-            if q == len(w):
-                break
-            last = cell[q]
-            rest = last
-            base = 0
-            for k in range(d - 1, -1, -1):
-                at[k] = rest % counts[k]
-                rest //= counts[k]
-                base += at[k] * nodes.stride[k]
-        for k in range(d):
-            spline((x[q, k] - nodes.origin[k]) / nodes.h - (nodes.first[k] + 1 + at[k]), n, dn, k)
-        for a in range(m):
-            i, j, k = nodes.local[a, 0], nodes.local[a, 1], nodes.local[a, 2]
-            value[a] = n[0, i] * n[1, j] * n[2, k]
-            slope[a, 0] = dn[0, i] * n[1, j] * n[2, k]
-            slope[a, 1] = n[0, i] * dn[1, j] * n[2, k]
-            slope[a, 2] = n[0, i] * n[1, j] * dn[2, k]
-        scale = w[q] / nodes.h**2
-        for a in range(m):
-            wa = w[q] * value[a]
-            for b in range(m):
-                element[a, b] += wa * value[b]
+    q = 0
+    while q < len(w):
+        home = cell[q]
+        rest, base = home, np.int64(0)
+        for k in range(d - 1, -1, -1):
+            at[k] = rest % counts[k]
+            rest //= counts[k]
+            base += at[k] * nodes.stride[k]
+        element[:], gradient[:] = 0.0, 0.0
+        while q < len(w) and cell[q] == home:
+            count = 0
+            while count < TOGETHER and q < len(w) and cell[q] == home:
+                for k in range(d):
+                    spline((x[q, k] - nodes.origin[k]) / nodes.h - (nodes.first[k] + 1 + at[k]), n, dn, k)
+                products(n, dn, d, with_gradient, value[count], slope[count * d : count * d + d])
+                scale[count] = w[q]
+                scales[count * d : count * d + d] = w[q] / nodes.h**2
+                count += 1
+                q += 1
+            squares(element, m, value, scale, count)
             if with_gradient:
-                s0, s1, s2 = scale * slope[a, 0], scale * slope[a, 1], scale * slope[a, 2]
-                for b in range(m):
-                    gradient[a, b] += s0 * slope[b, 0] + s1 * slope[b, 1] + s2 * slope[b, 2]
+                squares(gradient, m, slope, scales, count * d)
+        for a in range(m):
+            i = base + nodes.local[a, 0] * nodes.stride[0] + nodes.local[a, 1] * nodes.stride[1] + nodes.local[a, 2] * nodes.stride[2]
+            for b in range(m):
+                o = nodes.place[a, b]
+                if o >= 0:
+                    mass[o, i] += element[a, b]
+                    if with_gradient:
+                        stiffness[o, i] += gradient[a, b]
 
 
 @kernel
@@ -141,20 +174,29 @@ def evaluate(nodes, d, x):
 
 @kernel
 def apply(stencil, diff, x, y):
-    """y = A x for a symmetric stencil."""
-    n = len(x)
-    y[:] = 0.0
-    for o in range(len(stencil)):
-        k = diff[o]
-        s = stencil[o]
-        if k == 0:
-            for i in range(n):
-                y[i] += s[i] * x[i]
-        else:
-            for i in range(n - k):
-                y[i] += s[i] * x[i + k]
-            for i in range(n - k):
-                y[i + k] += s[i] * x[i]
+    """y = A x for a symmetric stencil: eight rows of A at once, x with zeros before and behind (what the stencil has there is not a number of A, or 0)."""
+    n, reach = len(x), diff[-1]
+    wide = np.zeros(n + 2 * reach + EIGHT)
+    for i in range(n):
+        wide[reach + i] = x[i]
+    whole = n - n % EIGHT
+    for i in range(0, whole, EIGHT):
+        at = reach + i
+        total = load8(stencil, i) * load8(wide, at)
+        for o in range(1, len(diff)):
+            k = diff[o]
+            total = fma(load8(stencil, o * n + i), load8(wide, at + k), total)
+            total = fma(load8(stencil, o * n + i - k), load8(wide, at - k), total)
+        store(y, i, total)
+    for i in range(whole, n):
+        total = stencil[0, i] * x[i]
+        for o in range(1, len(diff)):
+            k = diff[o]
+            if i + k < n:
+                total += stencil[o, i] * x[i + k]
+            if i >= k:
+                total += stencil[o, i - k] * x[i - k]
+        y[i] = total
 
 
 @kernel

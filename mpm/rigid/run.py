@@ -92,7 +92,7 @@ def choose(system: System, method: Method, end: float):
         return BoundedSteps(system, method.tolerance)
     linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant) and len(system.hot) == 0
     if linear and method.kind != "explicit":
-        return LinearSteps(system, method.tolerance, method.order, iterates(system))
+        return LinearSteps(system, method.tolerance, method.order, iterates(system), checked=method.step is None)
     if method.kind == "implicit":
         return NewtonSteps(system, method.tolerance, method.order)
     explicit = ChebyshevSteps(system, method.tolerance)

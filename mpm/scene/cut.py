@@ -11,9 +11,12 @@ Order p is exact for monomials x^a y^b, a, b <= p (and one more power of x, the 
 (45 degrees at most each) order 4 leaves 5e-10 with one cell a radius, 1e-14 with four. Fails when a feature is thinner than 1e-11 of a cell: it is not seen.
 """
 
+import functools
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from mpm.scene.trace import packed, points, trace
 
 EDGE = 1e-11  # of a cell: what is nearer to a grid line lies on it
 
@@ -74,10 +77,13 @@ class CutCells:
     side: np.ndarray = field(repr=False)
 
 
+@functools.lru_cache(maxsize=32)
 def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights on [0, 1]."""
     x, w = np.polynomial.legendre.leggauss(n)
-    return 0.5 * (x + 1), 0.5 * w
+    x, w = 0.5 * (x + 1), 0.5 * w
+    x.flags.writeable = w.flags.writeable = False
+    return x, w
 
 
 def locate(x: np.ndarray, edges: list[np.ndarray]) -> np.ndarray:
@@ -107,120 +113,14 @@ def line(lower: float, upper: float, edges: np.ndarray, order: int) -> tuple[Qua
     return Quadrature(x.reshape(-1, 1), w.ravel(), np.repeat(cell, len(g))), surface
 
 
-def _crossings(piece, edges) -> np.ndarray:
-    """Parameters t (fraction of a segment, angle of an arc) at which the piece crosses grid lines, its ends included, sorted."""
-    found = []
-    for k, e in enumerate(edges):
-        if isinstance(piece, Segment):
-            run = piece.end[k] - piece.start[k]
-            if run != 0.0:
-                found.append((e - piece.start[k]) / run)
-        else:
-            c = (e - piece.centre[k]) / piece.radius
-            c = c[np.abs(c) <= 1]
-            angle = np.arccos(c) if k == 0 else np.arcsin(c)
-            both = np.concatenate([angle, -angle if k == 0 else np.pi - angle])
-            found.append(piece.start + np.mod(both - piece.start, 2 * np.pi))
-    lo, hi = (0.0, 1.0) if isinstance(piece, Segment) else (piece.start, piece.end)
-    t = np.concatenate(found) if found else np.empty(0)
-    return np.concatenate([[lo], np.sort(t[(t > lo) & (t < hi)]), [hi]])
-
-
-def _boundary(pieces, edges, n):
-    """Every piece split at the grid lines, n Gauss points a part: x (A, n, 2), ds (A, n), normal (A, n, 2), cell (A,), side (A,), on_line (A,)."""
-    g, gw = gauss(n)
-    parts = []
-    tiny = EDGE * min(np.diff(e).min() for e in edges)
-    for piece in pieces:
-        t = _crossings(piece, edges)
-        if isinstance(piece, Segment):
-            start, run = np.array(piece.start), np.subtract(piece.end, piece.start)
-            length = np.hypot(*run)
-        else:
-            length = piece.radius
-        keep = np.diff(t) * length > tiny
-        a, dt = t[:-1][keep], np.diff(t)[keep]
-        at = a[:, None] + dt[:, None] * g
-        if isinstance(piece, Segment):
-            x = start + at[..., None] * run
-            normal = np.broadcast_to(np.array([run[1], -run[0]]) / length, x.shape)
-        else:
-            radial = np.stack([np.cos(at), np.sin(at)], axis=-1)
-            x, normal = np.array(piece.centre) + piece.radius * radial, piece.outward * radial
-        middle, inward = x[:, n // 2], normal[:, n // 2]
-        cell = locate(middle - 2 * tiny * inward, edges)
-        on_line = np.zeros(len(a), dtype=bool)
-        for k, e in enumerate(edges):
-            nearest = np.abs(x[..., k, None] - e[np.clip(np.searchsorted(e, middle[:, k])[:, None] + [-1, 0], 0, len(e) - 1)][:, None, :]).max(1).min(-1)
-            on_line |= nearest < tiny
-        inside = cell >= 0
-        parts.append((x[inside], (dt[:, None] * length * gw)[inside], normal[inside], cell[inside], np.full(inside.sum(), piece.side), on_line[inside]))
-    return [np.concatenate(columns) for columns in zip(*parts, strict=True)]
-
-
-def _edge_spans(pieces, y, left, right):
-    """Spans of the horizontal lines y (C,) between left and right, split where the boundary crosses: (C, K) starts and ends."""
-    cuts = [left, right]
-    circles = {(p.centre, p.radius) for p in pieces if isinstance(p, Arc)}
-    for centre, radius in sorted(circles):
-        half = np.sqrt(np.maximum(radius**2 - (y - centre[1]) ** 2, 0.0))
-        cuts += [centre[0] - half, centre[0] + half]
-    for p in pieces:
-        if isinstance(p, Segment) and p.start[1] != p.end[1]:
-            t = (y - p.start[1]) / (p.end[1] - p.start[1])
-            cuts.append(np.where((t >= 0) & (t <= 1), p.start[0] + t * (p.end[0] - p.start[0]), left))
-    cuts = np.sort(np.clip(np.stack(cuts, axis=-1), left[:, None], right[:, None]), axis=-1)
-    return cuts[:, :-1], cuts[:, 1:]
-
-
 def plane(pieces, distance, edges, order: int) -> tuple[Quadrature, Surface]:
     """The region bounded by `pieces` cut by the cells of two directions; `distance(x) -> signed distance` tells inside from outside."""
-    (X, Y), n = edges, order + 2
-    tiny = EDGE * min(np.diff(X).min(), np.diff(Y).min())
-    sx, ds, normal, cell, side, on_line = _boundary(pieces, edges, n)
-    surface = Surface(sx.reshape(-1, 2), ds.ravel(), normal.reshape(-1, 2), np.repeat(cell, n), np.repeat(side, n))
-    rows = len(Y) - 1
-    g, gw = gauss(order // 2 + 1)
-
-    cuts = np.unique(cell[~on_line])
-    whole = np.ones((len(X) - 1, rows), dtype=bool)
-    whole.ravel()[cuts] = False
-    i, j = np.nonzero(whole)
-    inside = distance(np.stack([X[i] + X[i + 1], Y[j] + Y[j + 1]], axis=-1) / 2) < 0
-    i, j = i[inside], j[inside]
-    hx, hy = X[i + 1] - X[i], Y[j + 1] - Y[j]
-    shape = (len(i), len(g), len(g))
-    full = [np.broadcast_to((X[i, None] + hx[:, None] * g)[:, :, None], shape), np.broadcast_to((Y[j, None] + hy[:, None] * g)[:, None, :], shape)]
-    points, weights = [np.stack(full, axis=-1).reshape(-1, 2)], [((hx * hy)[:, None, None] * (gw[:, None] * gw)).ravel()]
-    homes = [np.repeat(i * rows + j, len(g) ** 2)]
-
-    faces = normal[..., 1] * ds
-    up = np.bincount(cell, weights=np.where(on_line, 0.0, faces.sum(1)), minlength=whole.size) >= 0
-    a = ~on_line & np.any(faces != 0, axis=1)  # upright sides carry no strips
-    j = cell[a] % rows
-    ref = np.where(up[cell[a]], Y[j], Y[j + 1])
-    height = sx[a][..., 1] - ref[:, None]
-    x = np.broadcast_to(sx[a][..., 0, None], (*height.shape, len(g)))
-    y = ref[:, None, None] + height[..., None] * g
-    points.append(np.stack([x, y], axis=-1).reshape(-1, 2))
-    weights.append(((faces[a] * height)[..., None] * gw).ravel())
-    homes.append(np.repeat(cell[a], n * len(g)))
-
-    i, j = cuts // rows, cuts % rows
-    start, end = _edge_spans(pieces, np.where(up[cuts], Y[j + 1], Y[j]), X[i], X[i + 1])
-    level = np.where(up[cuts], Y[j + 1] - 4 * tiny, Y[j] + 4 * tiny)  # the inner side of the edge: a boundary that runs along it is then unambiguous
-    c, k = np.nonzero(end - start > tiny)
-    start, end = start[c, k], end[c, k]
-    inside = distance(np.stack([(start + end) / 2, level[c]], axis=-1)) < 0
-    start, length, c = start[inside], (end - start)[inside], c[inside]
-    shape = (len(c), len(g), len(g))
-    bottom, top = Y[j[c]], Y[j[c] + 1]
-    x = np.broadcast_to((start[:, None] + length[:, None] * g)[:, :, None], shape)
-    y = np.broadcast_to((bottom[:, None] + (top - bottom)[:, None] * g)[:, None, :], shape)
-    points.append(np.stack([x, y], axis=-1).reshape(-1, 2))
-    weights.append(((length * (top - bottom))[:, None, None] * (gw[:, None] * gw)).ravel())
-    homes.append(np.repeat(cuts[c], len(g) ** 2))
-    return Quadrature(np.concatenate(points), np.concatenate(weights), np.concatenate(homes)), surface
+    X, Y = edges
+    g, gw = gauss(order + 2)
+    found = trace(*packed(pieces), X, Y, g, gw, EDGE * min(np.diff(X).min(), np.diff(Y).min()))
+    x, w, cell = points(found, distance(found.asked) < 0, X, Y, *gauss(order // 2 + 1))
+    surface = (found.x.reshape(-1, 2), found.ds.ravel(), found.normal.reshape(-1, 2), np.repeat(found.cell, len(g)), np.repeat(found.side, len(g)))
+    return Quadrature(x, w, cell), Surface(*surface)
 
 
 def _cross(a_x, a_w, a_cell, b_x, b_w, b_cell, columns):

@@ -13,11 +13,12 @@ import numpy as np
 
 from mpm.scene.cut import EDGE, Arc, Quadrature, Surface, gauss, plane
 
+EIGHTHS = tuple(np.linspace(-np.pi, np.pi, 9).tolist())
+
 
 def circle(centre, radius: float) -> list[Arc]:
     """Eight arcs, so that none is long and the faces of `side` (left, top, ...) change at an end."""
-    angles = np.linspace(-np.pi, np.pi, 9)
-    return [Arc(tuple(centre), radius, a, b) for a, b in pairwise(angles)]
+    return [Arc(tuple(centre), radius, a, b) for a, b in pairwise(EIGHTHS)]
 
 
 def _patches(centre, radius, edges, n, m):

@@ -166,9 +166,10 @@ def fitted(peers: Path | None, python: str | None) -> str:
                     if one["rms"] <= wanted:
                         found[wanted] = min(found.get(wanted, math.inf), one["seconds"])
     said = []
-    for wanted, (seconds, error, cell, tolerance) in sorted(((float(key), value) for key, value in model("disc").items()), reverse=True):
+    for wanted, (seconds, error, cell, pace) in sorted(((float(key), value) for key, value in model("disc").items()), reverse=True):
+        steps = f"{pace['count']} equal steps" if "count" in pace else f"tolerance {pace['tolerance']:g}"
         beside = f", scikit-fem P2 {1e3 * found[wanted]:.1f} ms: {found[wanted] / seconds:.1f} x" if wanted in found else ""
-        said.append(f"{wanted:g} in {1e3 * seconds:.1f} ms (error {error:.1e}, cell {cell:g}, tolerance {tolerance:g}){beside}")
+        said.append(f"{wanted:g} in {1e3 * seconds:.1f} ms (error {error:.1e}, cell {cell:g}, {steps}){beside}")
     return "Robin disc, from config to answer: " + "; ".join(said)
 
 

@@ -36,7 +36,7 @@ def test_it_gives_what_a_factorisation_gives(monkeypatch, space, bi):
     x, _ = direct.points()
     assert np.abs(direct.sample(x, 0) - iterated.sample(x, 0)).max() < 1e-6 and balanced(direct) and balanced(iterated)
     solver = iterated.bodies[0][1].solver
-    assert solver.count[0] == 4 * 7 and solver.count[1] < (12 if np.isfinite(bi) else 100) * solver.count[0]
+    assert solver.count[0] == 4 * 5 and solver.count[1] < (12 if np.isfinite(bi) else 100) * solver.count[0]
 
 
 def test_large_bodies_are_solved_by_it():

@@ -6,7 +6,7 @@ import pytest
 from mpm.materials.laws import Bump, Constant, Logistic, table
 from mpm.materials.roles import enthalpy
 from mpm.rigid import Method, RigidBody, outlook, solve
-from mpm.rigid.band import back_substitute, factorise, fill
+from mpm.rigid.band import back_substitute, factorise, fill, make_band
 from mpm.rigid.geometry import evaluated, geometry, row_sums
 from mpm.rigid.nodes import apply, interpolate, make_nodes
 from mpm.rigid.sdirk import TABLEAUS
@@ -34,15 +34,16 @@ def test_stencils_and_band(shape):
     apply(made.stiffness, diff, x, y)
     np.testing.assert_allclose(y, stiffness @ x, atol=1e-12)
     np.testing.assert_allclose(row_sums(made.stiffness, diff), 0, atol=1e-13)
-    band = np.empty((made.nodes.size, diff[-1] + 1))
+    size, reach = made.nodes.size, int(diff[-1])
+    band = make_band(size, reach)
     fill(band, diff, made.mass, 1.0, made.stiffness, 0.3, ~made.active)
-    assert factorise(band) == -1
+    assert factorise(band, size, reach) == -1
     full = mass + 0.3 * stiffness + np.diag(~made.active * 1.0)
     b = full @ x
-    back_substitute(band, b)
+    back_substitute(band, reach, b)
     np.testing.assert_allclose(full @ b, full @ x, atol=1e-13 * np.abs(full).max())
     fill(band, diff, made.mass, -1.0, made.stiffness, 0.0, ~made.active)
-    assert factorise(band) >= 0
+    assert factorise(band, size, reach) >= 0
 
 
 def test_matrices_integrate_polynomials():
