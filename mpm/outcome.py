@@ -6,6 +6,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 from dataclasses import dataclass
 
 COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
+UNSOUND = -1  # what a block of steps was to begin from: mpm.guards looks again, and says which of these it is
 
 KINDS = {
     COMPLETED: ("completed", "", ""),

@@ -29,7 +29,7 @@ from mpm.integrate.timestep import SUBSTEPS, Limits, limits
 from mpm.lanes import aligned
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder
-from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, STEP_UNDERFLOW, Outcome, outcome
+from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.transfer import columns, wants_change
 
@@ -197,7 +197,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
         clock.part += 1
     clock.parts = 0
-    return guards.block(scene, clock)
+    return guards.whole(scene, clock)
 
 
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
@@ -264,8 +264,7 @@ def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) ->
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     while until - clock.time > 1e-12 * until:
-        sound = guards.block(scene, clock)
-        if not sound.ok:
+        if not (sound := guards.block(scene, clock)).ok:
             return sound
         now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
         step = scene.step or now.step() * scene.safety
@@ -286,10 +285,12 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
         if failed is not None:
             report = clock.reports[failed]
+            if report[CODE] == UNSOUND and not (found := guards.whole(scene, clock)).ok:  # before any step
+                return found
             clock.steps += int(report[STEP])
             clock.time += dt * int(report[STEP])
             detail = f"of {scene.names[failed]}" if len(scene.names) > 1 else ""
-            return outcome(int(report[CODE]), scene.order.name(failed, int(report[PARTICLE])), clock.time * scene.scale, clock.steps, detail)
+            return outcome(max(NON_FINITE, int(report[CODE])), scene.order.name(failed, int(report[PARTICLE])), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
         clock.time = until if block == count else clock.time + dt * block
         if look():

@@ -1,6 +1,6 @@
 """The mechanical step, symplectic Euler, chunk by chunk (physics.md 4).
 
-open      particles -> nodes
+open      particles, if they are sound -> nodes
 each step nodes: v = p/m + dt g, walls (XPIC: its extra transfers)
           each chunk: gather v, L -> carry (APIC, FLIP, XPIC) -> F-bar -> move -> respond (strain, flow, stress) -> scatter on to the other nodes
           clear these nodes, swap
@@ -18,10 +18,11 @@ from mpm.integrate.load import act
 from mpm.integrate.locking import any_averages, average_all, relax
 from mpm.integrate.respond import respond
 from mpm.integrate.sharpen import sharpen
+from mpm.integrate.sound import sound
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
-from mpm.outcome import LEFT_GRID, NON_FINITE
+from mpm.outcome import LEFT_GRID, NON_FINITE, UNSOUND
 from mpm.state import PAD
 from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick_up, spread, uses_basis_gradient, wants_change
 
@@ -89,6 +90,9 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
 def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
     """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
     x, past = body.particles.x, 0.0 if opening else dt
+    if opening and not sound(space, body, first, count):
+        report[CODE], report[PARTICLE] = UNSOUND, first
+        return False
     lay_down(x, first, count, chunk.place)
     if opening:
         fetch(body.particles, first, chunk, count)
