@@ -107,7 +107,8 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
     """The JSON document."""
     from mpm.records.variables import STATUS
 
-    failures = [{"run_id": run_id, "status": STATUS[line["status"]], "error": line["error"]} for run_id, line in result.lines.items() if line["status"]]
+    bad = (result.lines[result.lines.ids[number]] for number in result.lines.by_status(ok=False))
+    failures = [{"run_id": line["run_id"], "status": STATUS[line["status"]], "error": line["error"]} for line in bad]
     return {
         "out": result.out,
         "dataset": result.out / "sweep.nc",

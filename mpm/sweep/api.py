@@ -17,6 +17,7 @@ from mpm.records.provenance import cores, versions
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Result
 from mpm.sweep.gather import Gather, NotCollected
+from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
 from mpm.sweep.room import output
@@ -64,17 +65,17 @@ def execute(
             left = store.tidy()
             reporter.note(f"{said_owner(lock.dead)} ended without leaving; its lock is cleared" + (f", {left} half-written files are removed" if left else ""))
         store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"), kind=kind)
-        lines, damaged = store.lines(list(points.cases))
+        lines, damaged = store.lines(points.ids)
         for run_id in damaged:
             reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
 
         gather = Gather(store, plan, lines, bytes_of(plan), reporter.note)
         supervisor = Engine(store, points, lines, options, reporter, gather)
-        reporter.start(points.total, points.total - sum(points.counts[run_id] for run_id in supervisor.due), options.jobs)
+        reporter.start(points.total, points.total - int(points.times[supervisor.due.numbers].sum()), options.jobs)
         with signals(supervisor.signal):
             try:
                 if supervisor.due:
-                    if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due[0]].experiment):
+                    if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due.first].experiment):
                         reporter.note(warning)
                     run_engine(supervisor, options)
             finally:
@@ -117,7 +118,7 @@ def run_engine(supervisor: Engine, options: Options) -> None:
         supervisor.run(Serial(options.runner, supervisor.heed))
         return
     ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
-    first = supervisor.points.cases[supervisor.due[0]].experiment.resolved() if ahead or options.scheduler else None
+    first = supervisor.points.cases[supervisor.due.first].experiment.resolved() if ahead or options.scheduler else None
     if options.scheduler:
         from mpm.sweep.cluster import Cluster
 
@@ -143,8 +144,8 @@ def signals(heard: Callable[[str], None]) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def folder_plan(out: Path) -> tuple[Store, Any, dict, dict[str, dict], list[str]]:
-    """A sweep's folder, read back: store, plan, experiment.json, lines, damaged ids."""
+def folder_plan(out: Path) -> tuple[Store, Any, Points, dict, Lines, list[str]]:
+    """A sweep's folder, read back: store, plan, its points, experiment.json, lines, damaged ids."""
     from mpm.config import load
 
     store = Store(out)
@@ -152,17 +153,17 @@ def folder_plan(out: Path) -> tuple[Store, Any, dict, dict[str, dict], list[str]
     if about is None:
         raise Refused(f"{out} holds no sweep (there is no experiment.json); give the folder that `mpm sweep` wrote")
     plan = planned(load(about["resolved"]), about.get("plan", "sweep"), 10**9)
-    lines, damaged = store.lines(list({case.run_id: None for case in plan.cases}))
-    return store, plan, about, lines, damaged
+    points = Points.of(plan)
+    return store, plan, points, about, *store.lines(points.ids)
 
 
 def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
     """Assemble sweep.nc from the points that are there: its path, whether it was written, counts by status."""
     from mpm.sweep.collect import collect
 
-    store, plan, about, lines, _ = folder_plan(out)
+    store, plan, points, about, lines, _ = folder_plan(out)
     written = collect(store, plan, about, lines)
-    return store.dataset, written, counts(Points.of(plan), lines, skipped(plan))
+    return store.dataset, written, counts(points, lines, skipped(plan))
 
 
 def run_one(

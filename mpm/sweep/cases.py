@@ -5,8 +5,8 @@ Cost of 10 000 points, measured on a busy two-core machine: 1.0 s (kappa x beta 
 """
 
 import math
+from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,98 +22,16 @@ from mpm.config.problems import ConfigError
 from mpm.config.slots import Path
 from mpm.config.variation import Group, Parameter, Variation, at_path, label
 from mpm.config.vary import Vary
+from mpm.sweep.listed import Alone, Case, Cases, Coordinate, Dimension, Listed
 from mpm.sweep.ranges import columns, replaced
 
 MOST_TOLD = 10  # wrong points told one by one
 
 
-@dataclass(frozen=True)
-class Coordinate:
-    """Values of one varied parameter along a dimension: floats in SI, or labels."""
-
-    name: str
-    values: np.ndarray
-    units: str
-    long_name: str
-    config_path: str
-
-
-@dataclass(frozen=True)
-class Dimension:
-    """A dimension of the dataset. An axis has one coordinate, named as itself; a zip, a sample and a list of points may have several."""
-
-    name: str
-    size: int
-    coords: list[Coordinate]
-
-
-class Case:
-    """One point: its run id (the hash of its content); its place, what is set, and its experiment, each made when asked for."""
-
-    __slots__ = ("flat", "maker", "run_id")
-
-    def __init__(self, maker: Any, flat: int, run_id: str):
-        self.maker, self.flat, self.run_id = maker, flat, run_id
-
-    @property
-    def index(self) -> tuple[int, ...]:
-        """Its place in the dimensions."""
-        return self.maker.index(self.flat)
-
-    @property
-    def values(self) -> dict[str, Any]:
-        """What the sweep sets, by path; what follows from it is left out."""
-        return self.maker.values(self.flat)
-
-    @property
-    def experiment(self) -> Experiment:
-        """The config of the point: some 0.1 ms."""
-        return self.maker.experiment(self.flat)
-
-
-@dataclass(frozen=True)
-class Alone:
-    """The maker of one point that is at hand already, as that of an experiment without a sweep."""
-
-    whole: Experiment
-    place: tuple[int, ...] = ()
-    told: dict[str, Any] = field(default_factory=dict)
-
-    def index(self, flat: int) -> tuple[int, ...]:
-        """Its place in the dimensions."""
-        return self.place
-
-    def values(self, flat: int) -> dict[str, Any]:
-        """What is set."""
-        return self.told
-
-    def experiment(self, flat: int) -> Experiment:
-        """The experiment itself."""
-        return self.whole
-
-
-@dataclass(frozen=True)
-class Cases:
-    """All points of a sweep; `skipped` is true where the condition drops one, and those have no case."""
-
-    dims: tuple[Dimension, ...] = ()
-    cases: list[Case] = field(default_factory=list)
-    skipped: np.ndarray = field(default_factory=lambda: np.zeros((), dtype=bool))
-    derived: tuple[tuple[tuple[str, ...], Coordinate], ...] = ()  # what follows by a formula: the dimensions it has, and its values there
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Sizes of the dimensions."""
-        return tuple(dim.size for dim in self.dims)
-
-    def __len__(self) -> int:
-        return len(self.cases)
-
-
 def plan(experiment: Experiment, max_runs: int = 10_000) -> Cases:
     """The points of an experiment; ConfigError if there are more than `max_runs` or if any is wrong."""
     if experiment.sweep is None:
-        return Cases(cases=[Case(Alone(experiment), 0, experiment.run_id)])
+        return Cases(cases=(Case(Alone(experiment), 0, experiment.run_id),))
     root = experiment._tree or wrap(experiment.resolved(), Origin("<experiment>"), [])
     names = Names(experiment)
     vary = Vary(experiment.sweep, names)
@@ -153,19 +71,21 @@ class Points:
         """Check every point, drop those that the condition drops."""
         dims = tuple(self.dimension(group) for group in self.variation.groups)
         skipped = np.zeros(self.shape, dtype=bool)
-        cases = []
+        flats, ids = array("q"), bytearray()
         for flat in range(math.prod(self.shape)):
             pairs = self.pairs(flat)
             if pairs is None or self.dropped(pairs):
                 skipped[self.index(flat)] = True
             elif point := self.point(pairs):
-                cases.append(Case(self, flat, point.identify(self.known)))
+                flats.append(flat)
+                ids += point.identify(self.known).encode("ascii")
             if len(self.found) >= MOST_TOLD:
                 break
         stop(self.root, self.found)
-        if not cases:
+        if not flats:
             stop(self.root, [Finding(("sweep", "where"), "the condition drops every point", "a condition that some points meet")])
-        return Cases(dims, cases, skipped, tuple(self.derived()))
+        listed = Listed(self, np.frombuffer(flats, np.int64), np.frombuffer(ids, f"S{len(ids) // len(flats)}"))
+        return Cases(dims, listed, skipped, tuple(self.derived()))
 
     def index(self, flat: int) -> tuple[int, ...]:
         """Place in the dimensions; the last one runs fastest."""

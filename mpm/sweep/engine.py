@@ -11,7 +11,7 @@ Stopping  by Ctrl-C, SIGTERM, the time budget or too many failures: what runs ha
 
 import math
 import time
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,11 +21,12 @@ from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
 from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
 from mpm.sweep.gather import Gather
+from mpm.sweep.lines import Lines
 from mpm.sweep.pace import Pace
 from mpm.sweep.report import Reporter, label
 from mpm.sweep.room import ADVICE, Room
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Points, missing
+from mpm.sweep.tally import Due, Points, missing
 
 POLL = 0.2  # s
 LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stopped
@@ -65,7 +66,7 @@ class Result:
     """What a sweep came to."""
 
     out: Any
-    lines: dict[str, dict]
+    lines: Lines
     counts: dict[str, int]
     ran: int
     stopped: str
@@ -88,13 +89,13 @@ class Running:
 class Engine:
     """One pass over the points that are due."""
 
-    def __init__(self, store: Store, points: Points, lines: dict[str, dict], options: Options, reporter: Reporter, gather: Gather | None = None):
+    def __init__(self, store: Store, points: Points, lines: Lines, options: Options, reporter: Reporter, gather: Gather | None = None):
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
         self.gather = gather  # collects what is there, now and then
-        self.due: deque[str] = deque(missing(points, lines, options.rerun))
+        self.due = Due(points.ids, missing(points, lines, options.rerun))
         if options.rerun == "all":
             store.forget(self.due)
-        self.alone: set[str] = store.own(list(self.due))  # also points that died, or were in a batch that died or overran
+        self.alone: set[str] = store.own(self.due)  # also points that died, or were in a batch that died or overran
         self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
         self.pace, self.names = Pace(), store.batch_names()
@@ -141,18 +142,18 @@ class Engine:
 
     def hand_out(self, executor: Executor) -> bool:
         """Start the next point, or the next few where they are tiny. False where it has to wait for those that run."""
-        size = 1 if self.due[0] in self.alone else self.pace.batch(len(self.due), len(self.running) + executor.free)
+        size = 1 if self.due.first in self.alone else self.pace.batch(len(self.due), len(self.running) + executor.free)
         if self.options.max_failures is not None:
             size = min(size, self.options.max_failures - self.failures)  # none runs after the last failure that is allowed
-        first = self.points.cases[self.due[0]].experiment
+        first = self.points.cases[self.due.first].experiment
         need = self.room.need(first)  # of a batch, the first speaks for all: they are tiny
         if self.refused(need):
             return True
         if not self.room.fits(need) or not self.on_disk(size, first):
             return False
-        run_ids = [self.due.popleft()]
-        while len(run_ids) < size and self.due and self.due[0] not in self.alone:
-            run_ids.append(self.due.popleft())
+        run_ids = [self.due.take()]
+        while len(run_ids) < size and self.due and self.due.first not in self.alone:
+            run_ids.append(self.due.take())
         self.attempts.update(run_ids)
         jobs = tuple(Job(run_id, self.points.cases[run_id].experiment.resolved(), self.attempts[run_id]) for run_id in run_ids)
         seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
@@ -165,13 +166,13 @@ class Engine:
     def refused(self, need: int) -> bool:
         """Whether the next point needs more memory than there is; it has its record then."""
         if refusal := self.room.refusal(need):
-            self.attempts[self.due[0]] += 1
-            self.record(self.due.popleft(), FAILED, refusal, MEMORY, ADVICE)
+            self.attempts[self.due.first] += 1
+            self.record(self.due.take(), FAILED, refusal, MEMORY, ADVICE)
         return bool(refusal)
 
     def any_can_run(self) -> bool:
         """Whether anything is left to start workers for, once the points at the front that need too much memory are refused."""
-        while self.due and not self.stopped and self.refused(self.room.need(self.points.cases[self.due[0]].experiment)):
+        while self.due and not self.stopped and self.refused(self.room.need(self.points.cases[self.due.first].experiment)):
             pass
         return bool(self.due) and not self.stopped
 
@@ -225,13 +226,13 @@ class Engine:
         for run_id in reversed(list(run_ids)):
             self.attempts[run_id] -= 1
             self.alone.add(run_id)
-            self.due.appendleft(run_id)
+            self.due.front.appendleft(run_id)
 
     def news(self, task: Task) -> list[str]:
         """Count what the disk has of a task that we have not heard of; the points of which it has nothing."""
         run_ids = [job.run_id for job in task.jobs]
-        found, _ = self.store.lines(run_ids)
-        fresh = {run_id: line for run_id, line in found.items() if line != self.lines.get(run_id)}
+        found = self.store.news(run_ids, task.batch)
+        fresh = {line["run_id"]: line for line in found if line != self.lines.get(line["run_id"])}
         for line in fresh.values():
             self.finish(line)
         return [run_id for run_id in run_ids if run_id not in fresh]
@@ -266,7 +267,9 @@ class Engine:
         again = status in (KILLED, TIMEOUT) and line["outcome"] != MEMORY and self.attempts[run_id] <= retries and not self.stopped
         if again:
             self.alone.add(run_id)
-            self.due.append(run_id)
+            self.due.back.append(run_id)
+        else:
+            self.attempts.pop(run_id, None)
         self.failures += status != OK and not again
         self.reporter.finished(label(self.points.cases[run_id]), line, again)
         if self.options.max_failures is not None and self.failures >= self.options.max_failures and (self.due or self.running):

@@ -20,9 +20,9 @@ def outlook(
 
     plan = plan_of(experiment, max_runs=max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
-    lines, _ = store.lines(list(points.cases))
+    lines, _ = store.lines(points.ids)
     due = missing(points, lines, rerun)
-    first = points.cases[due[0]] if due else plan.cases[0] if plan.cases else None
+    first = points.cases[points.ids[due[0]]] if len(due) else plan.cases[0] if plan.cases else None
     cost = importlib.import_module(engine.RUNNER).estimate(first.experiment) if first else {}
     step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") else None
     return {

@@ -5,28 +5,30 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mpm.records.provenance import source_hash
-from mpm.records.variables import OK, STATUS
+from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan, skipped
 from mpm.sweep.lock import owner, said_owner
 from mpm.sweep.report import label
-from mpm.sweep.tally import Points, counts
+from mpm.sweep.tally import counts
 
 SLOWEST = 5
 
 
 def status(out: Path) -> dict[str, Any]:
     """Counts by status, failures grouped by reason, slowest points, points from other source, who works here, seconds of work and of waiting left."""
-    store, plan, about, lines, damaged = folder_plan(out)
-    points = Points.of(plan)
+    store, plan, points, about, lines, damaged = folder_plan(out)
     found = counts(points, lines, skipped(plan))
     reasons: dict[str, list[str]] = defaultdict(list)
-    for run_id, line in lines.items():
-        if line["status"] != OK:
-            reasons[reason(line)].append(run_id)
-    done = [line["wall_time"] for line in lines.values() if line["status"] == OK]
-    slow = sorted((run_id for run_id in lines if lines[run_id]["status"] == OK), key=lambda run_id: -lines[run_id]["wall_time"])[:SLOWEST]
-    mean = sum(done) / len(done) if done else None
+    for number in lines.by_status(ok=False):
+        reasons[reason(lines[points.ids[number]])].append(points.ids[number])
+    ok = lines.by_status(ok=True)
+    took = lines.rows["wall_time"][ok]
+    slow = [points.ids[number] for number in ok[np.argsort(-took, kind="stable")[:SLOWEST]]]
+    other = np.flatnonzero(lines.rows["there"] & (lines.rows["source"] != lines.code(source_hash())))
+    mean = float(took.mean()) if len(took) else None
     left, who = mean * found["pending"] if mean is not None else None, owner(store.out)
     begun = {path.stem for path in (store.out / "checkpoints").glob("*.checkpoint")}
     return {
@@ -34,7 +36,7 @@ def status(out: Path) -> dict[str, Any]:
         "name": about["name"],
         "points": sum(found.values()),
         "counts": found,
-        "stale": sorted(run_id for run_id, line in lines.items() if line["source"] != source_hash()),
+        "stale": sorted(points.ids[number] for number in other),
         "damaged": damaged,
         "failures": [
             {"reason": why, "count": len(ids), "example": label(points.cases[ids[0]])} | {name: lines[ids[0]][name] for name in ("error", "advice", "run_id")}

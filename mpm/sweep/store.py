@@ -15,7 +15,7 @@ import itertools
 import json
 import os
 import secrets
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +66,7 @@ class Store:
             path.unlink(missing_ok=True)
         return len(left)
 
-    def own(self, run_ids: list[str]) -> set[str]:
+    def own(self, run_ids: Collection[str]) -> set[str]:
         """Those of the points that have a file of their own."""
         if len(run_ids) < FEW:
             return {run_id for run_id in run_ids if self.path(run_id).exists()}
@@ -74,7 +74,7 @@ class Store:
         for shard in {run_id[:2] for run_id in run_ids}:
             with contextlib.suppress(FileNotFoundError):
                 there.update(name.removesuffix(".nc") for name in os.listdir(self.out / "points" / shard) if name.endswith(".nc"))
-        return there.intersection(run_ids)
+        return {run_id for run_id in run_ids if run_id in there} if there else there
 
     def places(self, run_ids: list[str]) -> dict[str, str]:
         """The name of what holds each point that is there: its own (the run id), or a batch's."""
@@ -136,11 +136,14 @@ class Store:
             for run_id in members:
                 yield run_id, found[run_id]
 
+    def batches(self) -> Iterator[tuple[str, Path]]:
+        """Names and files of the batches, the later ones last."""
+        return ((f"{BATCH}{path.stem}", path) for path in sorted((self.out / "batches").glob("*/[0-9]*.nc")))
+
     def look(self) -> list[str]:
         """Read the summaries of batches that have appeared since the last look; names of those whose end is damaged."""
         damaged = []
-        for path in sorted((self.out / "batches").glob("*/[0-9]*.nc")):
-            name = f"{BATCH}{path.stem}"
+        for name, path in self.batches():
             if name in self.seen:
                 continue
             try:
@@ -165,11 +168,19 @@ class Store:
         this = secrets.token_hex(4)
         return (f"{BATCH}{number:08d}-{this}" for number in itertools.count(max(used, default=-1) + 1))
 
-    def lines(self, run_ids: list[str]) -> tuple[Lines, list[str]]:
+    def lines(self, run_ids: Iterable[str]) -> tuple[Lines, list[str]]:
         """Summaries of the points that are there, and the names (of points and batches) of files whose end is damaged."""
-        damaged, found, batches = self.look(), Lines(), {}
-        own = self.own(run_ids)
-        for run_id in run_ids:
+        found, damaged = Lines(run_ids), []
+        own = self.own(found.ids)
+        for name, path in self.batches():
+            try:
+                line = summary(path)
+            except DamagedFile:
+                damaged.append(name)
+                continue
+            if line is not None:
+                found.put_all(line["points"], without=own)
+        for run_id in found.ids if own else ():
             if run_id in own:
                 try:
                     line = summary(self.path(run_id))
@@ -178,13 +189,18 @@ class Store:
                     continue
                 if line is not None:
                     found[run_id] = line
-            elif run_id in self.batched:
-                batches.setdefault(self.batched[run_id], set()).add(run_id)
-        for name, members in batches.items():
-            for line in (summary(self.path(name)) or {"points": []})["points"]:
-                if line["run_id"] in members:
-                    found[line["run_id"]] = line
         return found, damaged
+
+    def news(self, run_ids: list[str], batch: str) -> list[dict]:
+        """Summaries of a task's points, those that are whole, wherever its worker may have put them."""
+        found: dict[str, dict] = {}
+        with contextlib.suppress(DamagedFile):
+            for line in (summary(self.path(batch)) or {"points": []})["points"] if batch else ():
+                found[line["run_id"]] = line
+        for run_id in self.own(run_ids):
+            with contextlib.suppress(DamagedFile):
+                found[run_id] = summary(self.path(run_id)) or found.get(run_id)
+        return [found[run_id] for run_id in run_ids if found.get(run_id)]
 
     def set_aside(self, name: str) -> Path:
         """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""

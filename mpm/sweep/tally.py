@@ -1,51 +1,115 @@
 """Tally: the points of a plan, which of them are missing, and how they are counted."""
 
-from collections import Counter
-from dataclasses import dataclass, field
+from collections import deque
+from collections.abc import Iterator, Mapping
 from typing import Any
+
+import numpy as np
 
 from mpm.records.provenance import source_hash
 from mpm.records.variables import FAILED, KILLED, OK, STATUS, TIMEOUT
+from mpm.sweep.ids import Ids, raw
+from mpm.sweep.lines import Lines
 
 EXIT = {"interrupted": 130, "terminated": 143, "budget": 75}
 
 
-@dataclass
 class Points:
-    """The points of a plan by run id: equal points are one."""
+    """The points of a plan by run id: equal points are one. `times` says how often each stands in the plan."""
 
-    cases: dict[str, Any]
-    total: int
-    counts: Counter = field(default_factory=Counter)
+    def __init__(self, plan: Any):
+        texts = getattr(plan.cases, "ids", None)
+        texts = raw(case.run_id for case in plan.cases) if texts is None else texts
+        first, times = np.unique(texts, return_index=True, return_counts=True)[1:]
+        alone = len(first) == len(texts)
+        kept = np.argsort(first)
+        self.first = None if alone else first[kept]  # the place in the plan of the first of equal points
+        self.times = np.ones(len(texts), np.int8) if alone else times[kept]
+        self.ids = Ids(texts if alone else texts[self.first])
+        self.cases, self.total = ById(self.ids, plan.cases, self.first), len(plan.cases)
 
     @classmethod
     def of(cls, plan: Any) -> "Points":
-        cases: dict[str, Any] = {}
-        for case in plan.cases:
-            cases.setdefault(case.run_id, case)
-        return cls(cases, len(plan.cases), Counter(case.run_id for case in plan.cases))
+        """Those of a plan."""
+        return cls(plan)
 
 
-def missing(points: Points, lines: dict[str, dict], rerun: str | None) -> list[str]:
-    """Run ids that are to run, in the plan's order."""
-    source = source_hash() if rerun == "stale" else ""
+class ById(Mapping):
+    """Cases by run id, in the order of the plan."""
 
-    def due(run_id: str) -> bool:
-        line = lines.get(run_id)
-        if line is None or rerun == "all":
-            return True
-        return (rerun == "failed" and line["status"] != OK) or (rerun == "stale" and line["source"] != source)
+    def __init__(self, ids: Ids, cases: Any, first: np.ndarray | None):
+        self.ids, self.listed, self.first = ids, cases, first
 
-    return [run_id for run_id in points.cases if due(run_id)]
+    def __getitem__(self, run_id: str) -> Any:
+        number = self.ids.find(run_id)
+        if number < 0:
+            raise KeyError(run_id)
+        return self.listed[number if self.first is None else int(self.first[number])]
+
+    def __contains__(self, run_id: object) -> bool:
+        return run_id in self.ids
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.ids)
+
+    def __len__(self) -> int:
+        return len(self.ids)
 
 
-def counts(points: Points, lines: dict[str, dict], skipped: int) -> dict[str, int]:
+class Due:
+    """Points to hand out: those of the plan by number, and around them those that are due again."""
+
+    def __init__(self, ids: Ids, numbers: np.ndarray):
+        self.ids, self.numbers, self.at = ids, numbers, 0
+        self.front: deque[str] = deque()
+        self.back: deque[str] = deque()
+
+    def __len__(self) -> int:
+        return len(self.front) + len(self.numbers) - self.at + len(self.back)
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self.front
+        yield from (self.ids[number] for number in self.numbers[self.at :])
+        yield from self.back
+
+    @property
+    def first(self) -> str:
+        """The next."""
+        return self.front[0] if self.front else self.ids[self.numbers[self.at]] if self.at < len(self.numbers) else self.back[0]
+
+    def take(self) -> str:
+        """The next, which is not due any more."""
+        if self.front:
+            return self.front.popleft()
+        if self.at < len(self.numbers):
+            self.at += 1
+            return self.ids[self.numbers[self.at - 1]]
+        return self.back.popleft()
+
+
+def missing(points: Points, lines: Lines, rerun: str | None) -> np.ndarray:
+    """Numbers of the points that are to run, in the plan's order. `lines` are of these points."""
+    assert lines.ids is points.ids
+    there = lines.rows["there"]
+    if rerun == "all":
+        return np.arange(len(there))
+    again = np.zeros(len(there), bool)
+    if rerun == "failed":
+        again = lines.rows["status"] != OK
+    elif rerun == "stale":
+        again = lines.rows["source"] != lines.code(source_hash())
+    return np.flatnonzero(~there | again)
+
+
+def counts(points: Points, lines: Lines, skipped: int) -> dict[str, int]:
     """Points by status; equal points count each."""
-    found = Counter({name: 0 for name in STATUS})
-    for run_id, times in points.counts.items():
-        found[STATUS[lines[run_id]["status"]] if run_id in lines else "pending"] += times
-    found["skipped"] += skipped
-    return dict(found)
+    assert lines.ids is points.ids
+    there = lines.rows["there"]
+    found = np.bincount(lines.rows["status"][there], weights=points.times[there], minlength=len(STATUS))
+    told = {name: int(count) for name, count in zip(STATUS, found, strict=True)}
+    told["pending"] += int(points.times[~there].sum())
+    told["skipped"] += skipped
+    return told
 
 
 def exit_code(found: dict[str, int], stopped: str) -> int:

@@ -9,13 +9,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
 from mpm.sweep.api import bytes_of, collect_last, folder_plan, run_engine, signals
-from mpm.sweep.engine import Engine, Options, Points
+from mpm.sweep.engine import Engine, Options
 from mpm.sweep.gather import Gather
 from mpm.sweep.lock import Lock, Refused
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import BATCH, Store
+from mpm.sweep.tally import Due
 
 
 @dataclass
@@ -99,21 +102,19 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
         if any(one["what"] == "dataset" for one in found.damaged):
             found.stopped = "`mpm run` makes run.nc again"
         return
-    store, plan, *_ = folder_plan(out)
-    points = Points.of(plan)
+    store, plan, points, *_ = folder_plan(out)
     names = [Path(one["file"]).stem if one["what"] == "point" else BATCH + Path(one["file"]).stem for one in found.damaged if one["what"] in ("point", "batch")]
-    there = store.places(list(points.cases))
+    there = store.places(list(points.ids))
     held = {run_id for run_id, name in there.items() if name in set(names)}
     found.lost = sum(one["what"] == "point" and Path(one["file"]).stem not in points.cases for one in found.damaged)
     unsaid = Store(out).look()  # batches whose end is damaged do not say what they held: then all that is not there is due
     for one in found.damaged:
         aside(out, one)
     store = Store(out)
-    lines, _ = store.lines(list(points.cases))
-    found.due = [run_id for run_id in points.cases if run_id not in lines and (run_id in held or unsaid)]
+    lines, _ = store.lines(points.ids)
+    found.due = [run_id for run_id in points.ids if run_id not in lines and (run_id in held or unsaid)]
     supervisor = Engine(store, points, lines, options, reporter)
-    supervisor.due.clear()
-    supervisor.due.extend(found.due)
+    supervisor.due = Due(points.ids, np.array([points.ids.find(run_id) for run_id in found.due], int))
     with signals(supervisor.signal):
         if found.due:
             run_engine(supervisor, options)

@@ -11,23 +11,29 @@ import importlib
 import os
 import resource
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import h5netcdf  # noqa: F401  (what a collect imports is no growth: it is there from the start)
 import numpy as np
 
 from mpm.config import load
-from mpm.sweep import api
-from mpm.sweep import collect as collecting
+from mpm.sweep import api, gather
 from mpm.sweep.cases import plan
 from mpm.sweep.engine import Options
 from mpm.sweep.report import Reporter
 from mpm.sweep.room import resident
 
 ROOT = Path(__file__).parents[2]
+COLLECT = """
+import sys
+from pathlib import Path
+from mpm.sweep.api import collect_folder
+assert collect_folder(Path(sys.argv[1]))[1]
+print(next(row for row in Path("/proc/self/status").read_text().splitlines() if row.startswith("VmHWM")).split()[1])  # kB; ru_maxrss has the parent's too
+"""
 SLAB = ROOT / "configs" / "scenes" / "slab.yaml"
 sys.path.insert(0, str(ROOT / "tests" / "fakes"))
 
@@ -63,15 +69,15 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
     found |= {"points": len(planned), "plan_s": time.perf_counter() - since}
     some = [case.experiment for case in planned.cases[:: max(1, points // 300)]]
     del planned
-    spent, assemble = [], collecting.assemble
+    spent, last = [], gather.Gather.last
 
-    def timed(*given):
+    def timed(self, stop):
         began = time.perf_counter()
-        data, outside = assemble(*given)
-        spent.append((time.perf_counter() - began, len(data)))
-        return data, outside
+        written = last(self, stop)
+        spent.append(time.perf_counter() - began)
+        return written
 
-    collecting.assemble = timed
+    gather.Gather.last = timed
     out, clock = Path(tempfile.mkdtemp(prefix="scale-", dir=".")), Clock()
     try:
         result = api.execute(experiment, out, Options(jobs=jobs, scheduler=address, runner=runner), clock, 10**7)
@@ -84,9 +90,13 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
         found["overhead_ms"] = found["all_in_ms"] - found["alone_ms"]
         memory = np.array(clock.memory) / 1e6
         found |= {"memory_first_MB": memory[0], "memory_last_MB": memory[-1], "memory_most_MB": memory.max()}
-        files = [path for path in out.rglob("*.nc") if path.name != "sweep.nc"]
+        files = [path for path in out.rglob("*.nc") if path.parent.parent.name in ("points", "batches")]
         found |= {"files": len(files), "bytes_a_point": sum(path.stat().st_size for path in files) / found["points"]}
-        found |= {"collect_s": spent[-1][0], "collects_meanwhile": len(spent) - 1, "dataset_bytes_a_point": spent[-1][1] / found["points"]}
+        found |= {"collect_s": spent[0], "dataset_bytes_a_point": sum(path.stat().st_size for path in out.rglob("s*/*.nc")) / found["points"]}
+        found["dataset_bytes_a_point"] += (out / "sweep.nc").stat().st_size / found["points"]
+        (out / "sweep.nc").unlink()
+        done = subprocess.run([sys.executable, "-c", COLLECT, str(out.resolve())], cwd=ROOT, capture_output=True, text=True, check=True)
+        found["collect_MB"] = int(done.stdout) / 1e3
         import xarray
 
         since = time.perf_counter()
@@ -97,7 +107,7 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
         assert api.execute(experiment, out, Options(jobs=jobs, runner=runner), None, 10**7).ran == 0
         found["again_s"] = time.perf_counter() - since
     finally:
-        collecting.assemble = assemble
+        gather.Gather.last = last
         shutil.rmtree(out)
     return found
 
@@ -108,7 +118,8 @@ def said(found):
 a point of a worker, all in    {found["all_in_ms"]:.2f} ms; run_point alone {found["alone_ms"]:.2f} ms; overhead {found["overhead_ms"]:.2f} ms
 MB of the parent               {found["memory_first_MB"]:.0f} at the first point, {found["memory_last_MB"]:.0f} at the last, most {found["memory_most_MB"]:.0f}
 on disk                        {found["files"]} files, {found["bytes_a_point"]:.0f} B a point
-collect, s                     {found["collect_s"]:.2f} ({found["collects_meanwhile"]} more meanwhile); dataset {found["dataset_bytes_a_point"]:.0f} B a point
+collect, s                     {found["collect_s"]:.2f}, in a process of {found["collect_MB"]:.0f} MB at its peak
+dataset                        {found["dataset_bytes_a_point"]:.0f} B a point
 open sweep.nc                  {found["open_s"]:.2f} s
 the same again                 {found["again_s"]:.2f} s, nothing runs
 peak of the parent             {found["peak_MB"]:.0f} MB"""
@@ -117,9 +128,9 @@ peak of the parent             {found["peak_MB"]:.0f} MB"""
 def grow(sizes):
     """Each size in a process of its own, and a straight line through the two largest."""
     import json
-    import subprocess
 
-    names = ("plan_s", "all_in_ms", "memory_last_MB", "peak_MB", "files", "bytes_a_point", "collect_s", "dataset_bytes_a_point", "open_s", "again_s")
+    names = ("plan_s", "all_in_ms", "memory_last_MB", "peak_MB", "collect_MB", "files", "bytes_a_point", "collect_s", "dataset_bytes_a_point")
+    names += ("open_s", "again_s")
     rows = []
     print("| points | " + " | ".join(names) + " |", flush=True)
     for size in sizes:
