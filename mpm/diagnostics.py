@@ -131,6 +131,6 @@ def exchanging_area(body) -> float:
     """Present area of the pieces that exchange heat: J |F^-T A| (Nanson) [m^(D-1), axisymmetric m^2 per radian]."""
     if isinstance(body.surface, NoExchange):
         return 0.0
-    owner = body.surface.owner
-    normal = np.einsum("sji,sj->si", np.linalg.inv(body.surface.F.astype(float))[owner], body.surface.area)
+    surface, owner = body.surface, body.surface.owner
+    normal = np.einsum("sji,sj->si", np.linalg.inv(surface.F.astype(float))[surface.row[owner]], surface.area)
     return float(body.particles.J[owner].astype(float) @ np.linalg.norm(normal, axis=1))

@@ -90,7 +90,8 @@ class Surface(NamedTuple):
     What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
     """
 
-    F: np.ndarray  # (N, D, D) total deformation gradient of the particles in the grid's directions: carries areas and offsets (Nanson)
+    F: np.ndarray  # (R, D, D) total deformation gradient, in the grid's directions, of the particles that own pieces: carries areas and offsets (Nanson)
+    row: np.ndarray  # (N,) which of them a particle is; -1: it owns no piece
     owner: np.ndarray  # (S,) particle
     area: np.ndarray  # (S, D) reference area times outward normal
     offset: np.ndarray  # (S, D) reference offset from particle to the piece's centroid [m]
@@ -223,7 +224,7 @@ class Body(NamedTuple):
 PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/order.py)
     Particles: Particles._fields,
     Thermal: ("theta", "c"),
-    Surface: ("F",),
+    Surface: ("row",),
     Latched: ("most",),
     Source: ("X", "t"),
     Load: ("force", "dipole", "F", "loaded", "t"),

@@ -170,7 +170,7 @@ assert heat_locally(NoHeating(), thermal(), 1, R0, Q(-0.01), lost) == 0.0
 
 beta, W = 12 * u.W / u.m**2 / K, u.W
 for radiation in (NoRadiation(), Radiation([Q(0.9)], [450 * K], [5 * K])):
-    surface = Surface(None, None, None, None, [beta], [20 * K], [3 * K], [50 * W / u.m**2], radiation)
+    surface = Surface(None, None, None, None, None, [beta], [20 * K], [3 * K], [50 * W / u.m**2], radiation)
     units(meet, (surface, 0, 40 * K, 300 * K, Q(0.5)), "W/m^2/K", "K", "W/m^2", free=[(2,), (3,)] if isinstance(radiation, NoRadiation) else [])
 units(lump, (Lumped(20 * W / u.m**3 / K, 400 * K), Thermal([20 * K], None, 300 * K, None, Constant(alpha)), R0, Q(1.1), 3 * u.s), "J/m^3")
 units(time_constant, (Lumped(20 * W / u.m**3 / K, 400 * K), thermal(), R0), "s", free=[(0, 1), (1, 0), (1, 2)])

@@ -9,31 +9,31 @@ from mpm.state import Axisymmetric, Line, Plane, Volume
 
 
 @role
-def area_and_offset(space, F, J, i, A, D, s, offset):
-    """Current area [m^(D-1)] of piece s owned by particle i; its current offset is written to `offset`."""
+def area_and_offset(space, F, row, J, A, D, s, offset):
+    """Current area [m^(D-1)] of piece s, whose owner has volume ratio J and deformation gradient F[row]; its current offset is written to `offset`."""
     raise TypeError(f"no surface for {type(space).__name__}")
 
 
 @area_and_offset.register(Line)
-def _(space, F, J, i, A, D, s, offset):
-    offset[0, 0] = F[i, 0, 0] * D[s, 0]
+def _(space, F, row, J, A, D, s, offset):
+    offset[0, 0] = F[row, 0, 0] * D[s, 0]
     return abs(A[s, 0])
 
 
 @area_and_offset.register(Plane)
 @area_and_offset.register(Axisymmetric)
-def _(space, F, J, i, A, D, s, offset):
-    F00, F01, F10, F11 = F[i, 0, 0], F[i, 0, 1], F[i, 1, 0], F[i, 1, 1]
+def _(space, F, row, J, A, D, s, offset):
+    F00, F01, F10, F11 = F[row, 0, 0], F[row, 0, 1], F[row, 1, 0], F[row, 1, 1]
     offset[0, 0] = F00 * D[s, 0] + F01 * D[s, 1]
     offset[1, 0] = F10 * D[s, 0] + F11 * D[s, 1]
-    out_of_plane = J[i] / (F00 * F11 - F01 * F10)
+    out_of_plane = J / (F00 * F11 - F01 * F10)
     a0, a1 = F11 * A[s, 0] - F10 * A[s, 1], F00 * A[s, 1] - F01 * A[s, 0]
     return out_of_plane * (a0 * a0 + a1 * a1) ** 0.5
 
 
 @area_and_offset.register(Volume)
-def _(space, F, J, i, A, D, s, offset):
-    f = F[i]
+def _(space, F, row, J, A, D, s, offset):
+    f = F[row]
     for a in range(3):
         offset[a, 0] = f[a, 0] * D[s, 0] + f[a, 1] * D[s, 1] + f[a, 2] * D[s, 2]
     total = 0.0

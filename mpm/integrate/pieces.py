@@ -29,7 +29,8 @@ def _(surface, space, body):
     D, S = directions(space), surface.owner.shape[0]
     area, offset, one = np.empty(S), np.empty((D, S)), np.zeros((D, 1))
     for s in range(S):
-        area[s] = area_and_offset(space, surface.F, body.particles.J, surface.owner[s], surface.area, surface.offset, s, one)
+        p = surface.owner[s]
+        area[s] = area_and_offset(space, surface.F, surface.row[p], body.particles.J[p], surface.area, surface.offset, s, one)
         offset[:, s] = one[:, 0]
     return surface.owner, area, offset
 

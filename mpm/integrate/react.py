@@ -5,7 +5,7 @@ In three dimensions without principal axes (mpm.isotropic), in a plane with thos
 """
 
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
-from mpm.integrate.deformation import carry_all
+from mpm.integrate.deformation import carry_owners
 from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, deliver_plane, deliver_volume, fail
 from mpm.isotropic import exponential3, largest, logarithm3, lowest3, norm, split
 from mpm.jit import kernel, role
@@ -139,7 +139,7 @@ def answer(body, chunk, first, p, count, trace, deviator, dt, report):
 
 @role(inline=True)
 def carry_surface(surface, chunk, first, count, dt, D):
-    """F of the particles where a surface needs it, once nothing else is wanted of chunk.e."""
+    """F of the particles that own pieces of surface."""
     raise TypeError(f"no surface {type(surface).__name__}")
 
 
@@ -150,7 +150,7 @@ def _(surface, chunk, first, count, dt, D):
 
 @carry_surface.register(Surface)
 def _(surface, chunk, first, count, dt, D):
-    carry_all(surface.F, chunk, first, count, dt, D)
+    carry_owners(surface.F, surface.row, chunk.L, first, count, dt, D)
 
 
 @role(inline=True)

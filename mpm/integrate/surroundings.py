@@ -88,7 +88,7 @@ class Surroundings:
     def touch(self, wall: HotWall, space, body, start: float, dt: float) -> None:
         """The pieces at a hot wall exchange with it alone."""
         surface, x = body.surface, body.particles.x
-        F = surface.F[surface.owner].astype(float)
+        F = surface.F[surface.row[surface.owner]].astype(float)
         place = x[surface.owner].astype(float) + np.einsum("sij,sj->si", F, surface.offset)
         normal = np.einsum("sji,sj->si", np.linalg.inv(F), surface.area)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)  # a face that is shut has no area

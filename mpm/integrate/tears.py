@@ -34,7 +34,7 @@ def faces(body, piece: np.ndarray) -> np.ndarray:
     """Where pieces are now (P, D)."""
     surface = body.surface
     owner = surface.owner[piece]
-    return body.particles.x[owner].astype(float) + np.einsum("pij,pj->pi", surface.F[owner].astype(float), surface.offset[piece])
+    return body.particles.x[owner].astype(float) + np.einsum("pij,pj->pi", surface.F[surface.row[owner]].astype(float), surface.offset[piece])
 
 
 def company(x, places, distance: float) -> np.ndarray:

@@ -69,10 +69,13 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
         raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
     S, D = len(kept), cut.centroid.shape[1]
     owner, dtype = cut.owner[kept], thermal.theta.dtype
-    F = np.tile(np.eye(D, dtype=dtype), (len(cut.volume), 1, 1))
+    owners = np.unique(owner)
+    row = np.full(len(cut.volume), -1, np.int32)
+    row[owners] = np.arange(len(owners))
+    F = np.tile(np.eye(D, dtype=dtype), (len(owners), 1, 1))
     radiation = Radiation(np.zeros(S), np.ones(S), np.zeros(S)) if radiating else NoRadiation()
     surface = Surface(
-        F, owner, cut.area[kept, None] * cut.normal[kept], cut.point[kept] - cut.centroid[owner],
+        F, row, owner, cut.area[kept, None] * cut.normal[kept], cut.point[kept] - cut.centroid[owner],
         np.zeros(S), np.zeros(S), np.zeros(S), np.zeros(S), radiation,
     )  # fmt: skip
     return surface, Surroundings(acts, walls, zero, most), kept

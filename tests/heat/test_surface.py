@@ -21,7 +21,7 @@ def test_nanson(core, dimension):
         out = rng.uniform(0.5, 1.5) if dimension == "axisymmetric" else 1.0
         J = out * np.linalg.det(F)
         A, offset, into = rng.standard_normal(D), rng.standard_normal(D), np.zeros((D, 4))
-        area = area_and_offset(SPACES[dimension], F[None], np.array([J]), 0, A[None], offset[None], 0, into)
+        area = area_and_offset(SPACES[dimension], F[None], 0, J, A[None], offset[None], 0, into)
         expected = np.linalg.norm(J * np.linalg.inv(F).T @ A) if D > 1 else abs(A[0])
         assert area == pytest.approx(abs(expected), rel=1e-12)
         assert np.allclose(into[:, 0], F @ offset, rtol=1e-13)

@@ -81,6 +81,25 @@ def test_sorted_particles_do_what_unsorted_ones_do(core, small, monkeypatch):
     assert any(not np.array_equal(run.series[name], plain.series[name]) for name in plain.series)  # they were sorted
 
 
+def test_only_owners_of_surface_carry_their_deformation(core, small):
+    """A block that flies and turns without force, its particles sorted as they go: F of every piece is that of its own particle's motion."""
+    rate = np.array([[0.2, 0.5], [-0.3, 0.1]])
+
+    def stretching(scene):
+        shuffled(scene)
+        p = scene.bodies[0].particles
+        p.v[:], p.C[:] = (p.x - 0.7) @ rate.T, rate
+
+    changes = {"time.end": 0.5, "time.step": 0.01, "lam": 1e-9, "mu": 1e-9, "method.gradient": "mls"}
+    made, run = core.play(scene(core, changes=changes), stretching)
+    body = made.bodies[0]
+    surface, owners = body.surface, np.unique(body.surface.owner)
+    assert run.outcome.ok and len(surface.F) == len(owners) < 0.7 * len(body.particles.m)
+    assert np.array_equal(np.sort(surface.row), np.concatenate([np.full(len(surface.row) - len(owners), -1), np.arange(len(owners))]))
+    F, J = surface.F[surface.row[owners]], body.particles.J[owners]
+    assert np.allclose(np.linalg.det(F), J, rtol=1e-12) and np.ptp(J) > 1e-3  # J is carried by every particle itself
+
+
 def spoil(p):
     p.C[7] = np.nan
 
