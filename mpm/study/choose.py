@@ -70,9 +70,14 @@ def numerical(settings: dict[str, Any]) -> dict[str, Any] | None:
     return {path: value for path, value in settings.items() if path.startswith(NUMERICS)}
 
 
+def charted() -> list[dict]:
+    """The settings of the charts: {study, physics, method, set, cell, steps (none: automatic), error, seconds} (`python -m mpm.study.figures`)."""
+    return json.loads(FRONTS.read_text(encoding="utf-8"))
+
+
 def rank(kind: str, tolerance: float, fronts: list[dict] | None = None) -> list[tuple[str, dict[str, Any], tuple[str, ...]]]:
     """Methods (name, settings, charts), the cheapest first: by the mean of the logarithms of their time over the best, of those that reach the tolerance."""
-    rows = [row for row in (json.loads(FRONTS.read_text(encoding="utf-8")) if fronts is None else fronts) if row["physics"] == kind]
+    rows = [row for row in (charted() if fronts is None else fronts) if row["physics"] == kind and not row.get("steps")]
     studies = tuple(dict.fromkeys(row["study"] for row in rows))
     found: dict[str, list[float]] = {}
     settings = {json.dumps(row["set"], sort_keys=True): row for row in rows}

@@ -18,7 +18,6 @@ from mpm.records.netcdf import write_whole
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "configs" / "studies"
 DOCS = ROOT / "docs"
-AUTOMATIC = ("automatic step", "cell")  # paths of refinement that leave the steps to the run
 BESIDE = "robin_cylinder"
 
 
@@ -102,18 +101,21 @@ def charted(name: str, peers: dict[str, str], cold: bool, quick: bool = False) -
 
 
 def remember(name: str, experiment, data) -> None:
-    """The settings at the automatic step, with error and time, into fronts.json: what `mpm plan --tol` chooses from (study/choose.py)."""
+    """The settings with error and time into fronts.json: at the automatic step what `mpm plan --tol` chooses from (study/choose.py); with steps of their own,
+    of the model that the config itself names, what study/promises.py measures that choice by."""
     from mpm.study.choose import FRONTS, numerical, physics
     from mpm.sweep.settings import plan
 
-    kept = [row for row in json.loads(FRONTS.read_text(encoding="utf-8")) if row["study"] != name] if FRONTS.exists() else []
+    kept, seen = [row for row in json.loads(FRONTS.read_text(encoding="utf-8")) if row["study"] != name] if FRONTS.exists() else [], set()
     for case in plan(experiment).cases:
         settings = numerical(experiment.chart.methods[case.values["method"]].set)
         error, seconds = (float(data[key].values[case.flat]) for key in ("relative_error", "cpu_min"))
-        if settings is None or case.values["path"] not in AUTOMATIC or not math.isfinite(error):
+        steps = {path: value for path, value in case.values.items() if path.startswith(("method.", "time.")) and path not in (settings or {})}
+        if settings is None or not math.isfinite(error) or case.run_id in seen or (steps and physics(case.experiment) != physics(experiment)):
             continue
+        seen.add(case.run_id)
         row = {"study": name, "physics": physics(case.experiment), "method": case.values["method"], "set": settings}
-        kept.append(row | {"cell": case.experiment.grid.cell, "error": float(f"{error:.4g}"), "seconds": float(f"{seconds:.4g}")})
+        kept.append(row | {"cell": case.experiment.grid.cell, "steps": steps, "error": float(f"{error:.4g}"), "seconds": float(f"{seconds:.4g}")})
     rows = ",\n".join(json.dumps(row, ensure_ascii=False) for row in sorted(kept, key=lambda row: row["study"]))
     write_whole(FRONTS, f"[\n{rows}\n]\n".encode())
 
