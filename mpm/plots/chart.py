@@ -134,10 +134,12 @@ def seconds(value: float, _: Any) -> str:
 
 
 def guides(ax: Any) -> None:
-    """Slopes -1 and -2 in a corner, over half a decade of time."""
+    """Slopes -1 and -2 in a corner; none where the times lie so close together that every slope is a wall."""
     (left, right), (low, high) = np.log10(ax.get_xlim()), np.log10(ax.get_ylim())
     x = left + 0.02 * (right - left)
-    width = 0.05 * (right - left)
+    width = max(0.05 * (right - left), 0.03 * (high - low))  # so that the two numbers stand apart
+    if width > 0.2 * (right - left):
+        return
     top = high - (STRIP + 0.03) * (high - low)
     for slope in (1, 2):
         ax.plot(10 ** np.array([x, x + width]), 10 ** np.array([top, top - slope * width]), color=QUIET, lw=1, zorder=1)

@@ -6,6 +6,8 @@ import pytest
 
 import mpm
 from mpm.study.choose import NoChoice, choose, grids, numerical, physics, rank, reach, refine
+from mpm.study.figures import STUDIES
+from mpm.study.promises import PROBLEMS, rivals
 
 SLAB = {
     "title": "Slab",
@@ -34,6 +36,20 @@ def test_the_method_that_reaches_the_tolerance_first_over_all_charts():
     assert reach(fast[:2], 0.1**1.5) == pytest.approx(10**0.5)
     assert reach(fast[:2], 0.005) == pytest.approx(20.0)  # a little beyond the finest, by the last slope
     assert math.isinf(reach(fast[:2], 1e-3))
+
+
+def test_settings_with_steps_of_their_own_are_measured_by_and_not_chosen():
+    stepped = row("stepped", 1e-4, 0.1, a=1) | {"steps": {"method.heat_step": 0.1}}
+    assert [found[0] for found in rank("rigid", 0.01, [stepped, row("automatic", 1e-3, 1.0, a=2)])] == ["automatic"]
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_a_choice_is_measured_by_settings_of_the_same_model(name):
+    experiment = mpm.load(STUDIES / f"{name}.yaml")
+    found = rivals(name, experiment)
+    assert {physics(one["experiment"]) for one in found} == {physics(experiment)}
+    assert {one["experiment"].grid.dimension for one in found} == {experiment.grid.dimension}
+    assert min(one["error"] for one in found) < 0.003 and len({one["label"] for one in found}) == len(found) > 5
 
 
 def test_physics_and_numbers_are_told_apart():
