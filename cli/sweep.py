@@ -128,10 +128,10 @@ def words(result: Any, picture: Any, config: Any) -> list[str]:
     told = [", ".join(f"{count} {name}" for name, count in result.counts.items() if count) + f"; {result.ran} run now, {result.seconds:.1f} s"]
     told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None]
     if result.counts["pending"]:
-        told.append(f"{result.counts['pending']} points are left: the same command goes on (mpm sweep {config})")
+        told.append(f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left: the same command goes on (mpm sweep {config})")
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
     if bad:
-        told.append(f"{bad} points are not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
+        told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
     if result.exit_code == 1:
         warn(f"stopped: {result.stopped}")
     return told

@@ -59,7 +59,10 @@ def execute(
     began = time.monotonic()
     plan = planned(experiment, kind, max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
-    store.out.mkdir(parents=True, exist_ok=True)
+    try:
+        store.out.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise Refused(f"{store.out} is no folder; choose another place with --out") from None
     with Lock(store.out, jobs=options.jobs) as lock:
         if lock.dead is not None:
             left = store.tidy()

@@ -1,4 +1,4 @@
-"""Compare: whether two datasets hold the same results. Times of day, wall times and attempts do not count."""
+"""Compare: whether two datasets hold the same results. Times of day, wall times, attempts and the config's text do not count; what it resolves to does."""
 
 import contextlib
 import json
@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm.sweep.store import Refused
+from mpm.sweep.store import Refused, differences
 
 NOT_RESULTS = ("wall_time", "attempts")
-NOT_ATTRIBUTES = ("started", "finished", "facts", "machine", "threads", "versions", "git_revision", "source_hash", "_NCProperties")
+NOT_ATTRIBUTES = ("config", "started", "finished", "facts", "machine", "threads", "versions", "git_revision", "source_hash", "_NCProperties")
+MOST_TOLD = 12  # paths of the config
 
 
 def dataset_of(place: Path) -> Path:
@@ -49,24 +50,40 @@ def compare(one: Path, two: Path, rtol: float = 0.0, atol: float = 0.0) -> list[
                 continue
             told += group(path, here.to_dataset(inherit=False), there.to_dataset(inherit=False), rtol, atol)
         keys = {key: None for tree in (a, b) for key in tree.attrs if key not in NOT_ATTRIBUTES}
-        told += [f"attribute {key}: {clip(a.attrs.get(key))} and {clip(b.attrs.get(key))}" for key in keys if not equal(a.attrs.get(key), b.attrs.get(key))]
+        for key in keys:
+            told += attribute(key, a.attrs.get(key), b.attrs.get(key))
     return told
+
+
+def attribute(key: str, x: Any, y: Any) -> list[str]:
+    """How an attribute differs; of the config each path that does."""
+    if equal(x, y):
+        return []
+    if key == "config_resolved":
+        with contextlib.suppress(TypeError, ValueError):
+            told = differences(json.loads(x), json.loads(y), set())
+            more = [f"config: {len(told) - MOST_TOLD} more paths"] if len(told) > MOST_TOLD else []
+            return [f"config: {line}" for line in told[:MOST_TOLD]] + more
+    return [f"attribute {key}: {clip(x)} and {clip(y)}"]
 
 
 def group(path: str, a: Any, b: Any, rtol: float, atol: float) -> list[str]:
     """Differences within one group."""
-    told = []
+    other = {dim: (a.sizes[dim], b.sizes[dim]) for dim in a.sizes if dim in b.sizes and a.sizes[dim] != b.sizes[dim]}
+    told, skipped = [f"{path}: {dim} has {one} and {two} values" for dim, (one, two) in other.items()], 0
     for name in {str(name): None for data in (a, b) for name in data.variables if str(name) not in NOT_RESULTS}:
         place = f"{path.rstrip('/')}/{name}"
         if name not in a.variables or name not in b.variables:
             told.append(f"{place}: only in the {'second' if name not in a.variables else 'first'}")
             continue
         x, y = a.variables[name], b.variables[name]
-        if x.dims != y.dims or x.shape != y.shape:
+        if x.dims == y.dims and set(x.dims) & set(other):
+            skipped += 1
+        elif x.dims != y.dims or x.shape != y.shape:
             told.append(f"{place}: {dict(x.sizes)} and {dict(y.sizes)}")
         elif text := values(x.values, y.values, rtol, atol):
             told.append(f"{place}: {text}")
-    return told
+    return [*told, *([f"{path}: {skipped} variables along {', '.join(map(str, other))} were not compared"] if skipped else [])]
 
 
 def values(x: np.ndarray, y: np.ndarray, rtol: float, atol: float) -> str:

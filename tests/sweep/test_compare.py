@@ -33,6 +33,19 @@ def test_what_counts_and_what_does_not(tmp_path):
     assert compare(write("three.nc", also={"extra": ("kappa", [0, 0])}), one) == ["/extra: only in the first"]
 
 
+def test_other_sizes_are_told_once_and_configs_by_path(tmp_path):
+    def write(name, count, end, text):
+        attrs = {"config": text, "config_resolved": f'{{"time": {{"end": {end}}}, "title": "a"}}'}
+        data = {"temperature_mean": ("kappa", np.arange(count)), "steps": ("kappa", np.arange(count)), "alpha": ((), 1.0)}
+        xr.Dataset(data, {"kappa": np.arange(count)}, attrs).to_netcdf(tmp_path / name, engine="h5netcdf")
+        return tmp_path / name
+
+    one = write("one.nc", 3, 1.0, "end: 1")
+    assert compare(one, write("two.nc", 3, 1.0, "end: 1  # s")) == []
+    said = ["/: kappa has 3 and 2 values", "/: 3 variables along kappa were not compared", "config: time.end: 1.0 -> 2.0"]
+    assert compare(one, write("two.nc", 2, 2.0, "end: 2")) == said
+
+
 def test_nothing_to_compare(tmp_path):
     with pytest.raises(Refused, match=r"neither sweep\.nc nor run\.nc"):
         compare(tmp_path, tmp_path)

@@ -176,6 +176,13 @@ def test_a_full_disk_stops_the_sweep_and_keeps_what_is_there(config, tmp_path, m
     assert again.exit_code == 0 and 0 < again.ran < 5
 
 
+def test_a_file_in_the_place_of_the_folder_is_refused(config, tmp_path):
+    (tmp_path / "out").write_text("mine")
+    with pytest.raises(Refused, match="out is no folder; choose another place"):
+        go(config([0.2]), tmp_path / "out")
+    assert (tmp_path / "out").read_text() == "mine"
+
+
 def test_events_are_told_as_they_happen(config, tmp_path):
     ears = Ears()
     execute(load(config([fake.DIES, 0.2])), tmp_path, Options(jobs=1, retries=1, runner="fake_runner"), ears)
