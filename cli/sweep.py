@@ -91,12 +91,13 @@ def draw(result: Any) -> Any:
         return None
     if not result.collected and picture.exists():
         return picture
-    from mpm.sweep.api import tree_of
+    import xarray
 
     try:
         from mpm.plots import overview
 
-        overview(tree_of(dataset), picture)
+        with xarray.open_datatree(dataset, engine="h5netcdf") as tree:  # reads what is drawn; all fields of a large sweep would take gigabytes
+            overview(tree, picture)
     except Exception as error:  # the results are there and sound; a figure that fails is told, and does not hide them
         internal(error, "the figure failed")
         return None

@@ -16,8 +16,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mpm.scene.trace import packed, points, trace
-
 EDGE = 1e-11  # of a cell: what is nearer to a grid line lies on it
 
 
@@ -117,6 +115,8 @@ def plane(pieces, distance, edges, order: int) -> tuple[Quadrature, Surface]:
     """The region bounded by `pieces` cut by the cells of two directions; `distance(x) -> signed distance` tells inside from outside."""
     X, Y = edges
     g, gw = gauss(order + 2)
+    from mpm.scene.trace import packed, points, trace  # compiled: a process that cuts nothing (a sweep's own, `mpm plan`) does without Numba
+
     found = trace(*packed(pieces), X, Y, g, gw, EDGE * min(np.diff(X).min(), np.diff(Y).min()))
     x, w, cell = points(found, distance(found.asked) < 0, X, Y, *gauss(order // 2 + 1))
     surface = (found.x.reshape(-1, 2), found.ds.ravel(), found.normal.reshape(-1, 2), np.repeat(found.cell, len(g)), np.repeat(found.side, len(g)))

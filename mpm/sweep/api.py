@@ -20,7 +20,6 @@ from mpm.sweep.gather import Gather, NotCollected
 from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
-from mpm.sweep.room import output
 from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, counts, exit_code
 
@@ -72,7 +71,7 @@ def execute(
         for run_id in damaged:
             reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
 
-        gather = Gather(store, plan, lines, bytes_of(plan), reporter.note)
+        gather = Gather(store, plan, lines, reporter.note)
         supervisor = Engine(store, points, lines, options, reporter, gather)
         reporter.start(points.total, points.total - int(points.times[supervisor.due.numbers].sum()), options.jobs)
         with signals(supervisor.signal):
@@ -91,11 +90,6 @@ def execute(
         reporter.note(supervisor.broken)
     code, hurried = exit_code(found, supervisor.stopped), supervisor.signals > 0
     return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried)
-
-
-def bytes_of(plan: Any) -> int:
-    """Bytes that a point writes, about; of a plan without points 0."""
-    return output(plan.cases[0].experiment) if plan.cases else 0
 
 
 def collect_last(gather: Gather, supervisor: Engine) -> bool:

@@ -4,6 +4,7 @@ the sweep's process does not grow by what a collect takes, hands out points mean
 That interpreter reads the folder as `mpm collect` does, says in a line of JSON what came of it, and ends with its parent.
 """
 
+import functools
 import importlib
 import json
 import os
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.sweep.processes import ONE_THREAD, ended
+from mpm.sweep.room import output
 from mpm.sweep.store import Store
 
 EVERY = 30.0  # least seconds between two datasets while running; SHARE times what one took, if that is more
@@ -71,12 +73,17 @@ class Beside:
 
 
 class Gather:
-    """Collects a folder whose points are `lines` so far, some `each` bytes a point. `note` hears of trouble while the sweep runs."""
+    """Collects a folder whose points are `lines` so far. `note` hears of trouble while the sweep runs."""
 
-    def __init__(self, store: Store, plan: Any, lines: Any, each: int, note: Callable[[str], None]):
-        self.store, self.plan, self.lines, self.each, self.note = store, plan, lines, each, note
+    def __init__(self, store: Store, plan: Any, lines: Any, note: Callable[[str], None]):
+        self.store, self.plan, self.lines, self.note = store, plan, lines, note
         self.cost, self.ended = 0.0, time.monotonic()
         self.child: Beside | None = None
+
+    @functools.cached_property
+    def each(self) -> int:
+        """Bytes of a point, about."""
+        return output(self.plan.cases[0].experiment) if self.plan.cases else 0
 
     @property
     def small(self) -> bool:
@@ -133,10 +140,10 @@ class Gather:
     def last(self, stop: Callable[[], bool]) -> bool:
         """All that is there now: whether it was written, and not because `stop` said so meanwhile."""
         self.close()
-        if self.small:
-            return self.here()
         if not self.due():
             return False
+        if self.small:
+            return self.here()
         self.child = Beside(self.store.out)
         while (written := self.child.over()) is None and not stop():
             time.sleep(LOOK)

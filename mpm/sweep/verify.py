@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
-from mpm.sweep.api import bytes_of, collect_last, folder_plan, run_engine, signals
+from mpm.sweep.api import collect_last, folder_plan, run_engine, signals
 from mpm.sweep.engine import Engine, Options
 from mpm.sweep.gather import Gather
 from mpm.sweep.lock import Lock, Refused
@@ -120,7 +120,7 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
             run_engine(supervisor, options)
             found.ran = sum(run_id in lines for run_id in found.due)
         if not supervisor.stopped:
-            collect_last(Gather(store, plan, lines, bytes_of(plan), reporter.note), supervisor)
+            collect_last(Gather(store, plan, lines, reporter.note), supervisor)
     found.stopped = supervisor.broken or supervisor.stopped
 
 

@@ -44,6 +44,14 @@ def test_the_same_again_is_quick_and_needs_no_numba(mpm, write, tmp_path):
     assert said.endswith("0 False False\n") and seconds < 1.0
 
 
+def test_a_sweep_leaves_numba_to_its_workers(write, tmp_path):
+    """Its own process stays small: kernels and what they need are loaded where points run."""
+    fakes = str(Path(__file__).parents[1] / "fakes")
+    code = f"import sys; sys.path.insert(0, {fakes!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'\n"
+    code += f"from mpm_cli.main import main; code = main(['sweep', {write([0.2])!r}, '-j', '1', '-q']); print(code, 'numba' in sys.modules)"
+    assert fresh(code, tmp_path)[0].endswith("0 False\n")
+
+
 def test_json_is_one_document_and_talk_goes_to_stderr(mpm, write):
     code, out, err = mpm("sweep", write([0.2, fake.DIVERGES]), "--json", "-j", "1")
     document = json.loads(out)
