@@ -290,5 +290,5 @@ class Engine:
                 at.asked = math.inf
                 self.executor.kill(task, "")
         self.reporter.beat({task: at.fraction for task, at in self.running.items()})
-        if self.gather is not None and self.ran:
-            self.gather.now_and_then()
+        if self.gather is not None:
+            self.gather.now_and_then(self.ran)

@@ -77,7 +77,7 @@ class Gather:
 
     def __init__(self, store: Store, plan: Any, lines: Any, note: Callable[[str], None]):
         self.store, self.plan, self.lines, self.note = store, plan, lines, note
-        self.cost, self.ended = 0.0, time.monotonic()
+        self.cost, self.ended, self.ran = 0.0, time.monotonic(), 0
         self.child: Beside | None = None
 
     @functools.cached_property
@@ -112,13 +112,14 @@ class Gather:
 
         return collect(self.store, self.plan, self.store.experiment(), self.lines)
 
-    def now_and_then(self) -> None:
-        """Called often while points run. Trouble is told, and the sweep goes on."""
+    def now_and_then(self, ran: int) -> None:
+        """Called often while points run, with how many have. Trouble is told, and the sweep goes on."""
         try:
             if self.child is not None:
                 if self.child.over() is not None:
                     self.paid(self.child.began)
-            elif time.monotonic() - self.ended > max(EVERY, SHARE * self.cost):
+            elif ran > self.ran and time.monotonic() - self.ended > max(EVERY, SHARE * self.cost):
+                self.ran = ran
                 if self.small:
                     began = time.monotonic()
                     self.here()

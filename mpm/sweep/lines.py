@@ -1,5 +1,6 @@
 """Lines: the summaries of a sweep's points (records.point.LINE) by run id, in columns: 54 bytes a point, where dicts would take a thousand."""
 
+import json
 from collections.abc import Collection, Iterable, Iterator, MutableMapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -90,6 +91,24 @@ class Lines(MutableMapping):
 
     def __contains__(self, run_id: object) -> bool:
         return isinstance(run_id, str) and (number := self.ids.find(run_id)) >= 0 and bool(self.rows["there"][number])
+
+    def content(self) -> Iterator[bytes]:
+        """All of it as bytes, whatever the order in which it came."""
+        at = self.ids.order[self.rows["there"][self.ids.order]]
+        yield self.ids.texts[at].tobytes()
+        for name in NAMES:
+            column = self.rows[name][at]
+            if name in TIMES:
+                yield np.maximum(column, -1).tobytes()
+                column = -1 - column[column < 0]
+            if name in TEXTS or name in TIMES:
+                used, place = np.unique(column, return_inverse=True)
+                words = [self.texts[code] for code in used]
+                ranks = np.empty(len(words), np.int64)
+                ranks[sorted(range(len(words)), key=words.__getitem__)] = np.arange(len(words))
+                yield json.dumps(sorted(words)).encode()
+                column = ranks[place]
+            yield column.tobytes()
 
     def by_status(self, ok: bool) -> np.ndarray:
         """Numbers of the points that are ok, or of those that are not."""

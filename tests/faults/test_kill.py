@@ -22,6 +22,9 @@ import sys
 sys.path[:0] = {paths!r}
 from pathlib import Path
 from scenes import go
+from mpm.sweep import gather
+if {beside!r}:  # datasets all the time, in a process of their own
+    gather.SMALL, gather.EVERY, gather.SHARE = 0, 0.0, 0
 print(go({config!r}, Path({out!r}), jobs=2).exit_code)
 """
 
@@ -61,7 +64,7 @@ def test_kills_of_a_sweep_with_workers(tmp_path, table, who, times):
     go(data, tmp_path / "whole")
     for turn in range(times):
         out = tmp_path / f"out{turn}"
-        code = PARENT.format(paths=[str(HERE), str(HERE.parent / "fakes"), *sys.path], config=data, out=str(out))
+        code = PARENT.format(paths=[str(HERE), str(HERE.parent / "fakes"), *sys.path], config=data, out=str(out), beside=who == "parent" or turn % 4 > 1)
         process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         end = time.monotonic() + 30
         while not list(out.glob("points/*/*.nc")) and time.monotonic() < end:
