@@ -23,12 +23,11 @@ from mpm.integrate.sound import span, unsound
 from mpm.integrate.surroundings import Surroundings
 from mpm.jit import kernel
 from mpm.materials import Hencky
-from mpm.materials.laws import Constant
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, Outcome, outcome
 from mpm.state import PAD, Axisymmetric, Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
 from mpm.transfer import Apic
 
-SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.06, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept, latent heat (0.46)
+SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.06, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept
 GROWTH, BLIND = 0.05, 0.5  # of the largest energy so far; BLIND where no slopes of velocity tell what is stagger (all but APIC): it is up to 0.17
 PLACES = {3: ((0, 0), (1, 1), (2, 2)), 4: ((0, 0), (1, 1), (2, 2), (0, 1)), 6: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}  # of B's columns
 
@@ -37,8 +36,7 @@ class Guards:
     """What one run may not do."""
 
     def __init__(self, scene):
-        smooth = all(isinstance(body.thermal.alpha, Constant) for body in scene.bodies if isinstance(body.thermal, Thermal))
-        over = ROUNDING if scene.repair else SLOPES if smooth and scene.blend == 1.0 and not scene.sharp else NOISE
+        over = ROUNDING if scene.repair else SLOPES if scene.blend == 1.0 and not scene.sharp else NOISE
         self.data = [Data(body, around, over) for body, around in zip(scene.bodies, scene.surroundings or (None,) * len(scene.bodies), strict=True)]
         self.judged = all(
             isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies

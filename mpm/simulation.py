@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm.boundary import directions, extents
 from mpm.guards import Guards, explain
+from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS

@@ -201,10 +201,11 @@ class NoAverage(NamedTuple):
 
 
 class Average(NamedTuple):
-    """Changes of volume averaged over the grid (integrate/locking.py): scratch of one step."""
+    """Changes of volume averaged over the grid (integrate/locking.py): scratch of one step, and how much of its own change a particle keeps."""
 
     change: np.ndarray  # (n,) volume change of a step [-]
     volume: np.ndarray  # (n,) [m^D]
+    own: float  # [-]
 
 
 class Body(NamedTuple):

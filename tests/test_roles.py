@@ -29,6 +29,10 @@ def scenes():
     for name, heat in (("1 implicit", {"implicit": {}}), ("1 second order", {"implicit": {"order": 2}})):
         data = common.config(1, surfaces=AIR, method={"heat": heat, "heat_step": 0.05}, time={"end": 0.1, "step": 0.025})
         yield name, data
+    for name, heat in (("1 latent", {"implicit": {"order": 2}}), ("1 latent stabilised", {"stabilised": {}}), ("1 latent explicit", {"explicit": {}})):
+        data = common.config(1, surfaces=AIR, method={"heat": heat, "heat_step": 0.05}, time={"end": 0.1, "step": 0.025})
+        data["materials"]["solid"]["heat"]["fourier"]["alpha"] = {"bump": {"base": 1.5, "heat": 20.0, "at": 399.0, "width": 0.5}}
+        yield name, data
     bare = common.config(1, surfaces=[], time={"end": 0.1, "step": 0.025})
     bare["materials"]["solid"] = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}}
     bare["walls"] = {"left": "contact", "right": "stick"}
@@ -132,6 +136,8 @@ ELSEWHERE = {
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
     "warms(NoHeating)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
     "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
+    *(f"{way}_by_law({law})" for way in ("explicit", "stabilised", "implicit") for law in ("Table", "Logistic")),  # tests/integrate/test_implicit_heat.py
+    "explicit_by_law(Constant)",  # the same
     "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_locking.py
     "grown(Line)", "grown(Plane)", "grown(Axisymmetric)", "grown(Volume)",  # the same
 }  # fmt: skip

@@ -37,9 +37,9 @@ def test_chocolate_spreads_to_where_its_yield_stress_holds_it():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cell", ["2 mm", "1.6 mm", "1.3333333333333333 mm"])
+@pytest.mark.parametrize("cell", ["1.6 mm", "1.3333333333333333 mm", "1 mm", "0.8 mm"])
 def test_most_of_the_chocolate_lies_where_the_formula_has_it(cell):
-    """The radii that hold 99 and 95 % of the volume, 0.975 and 0.924 of the radius in the profile h ~ sqrt(1 - r/R), within 2 %: not with cells of 1 mm."""
+    """The radii that hold 99 and 95 % of the volume, 0.975 and 0.924 of the radius in the profile h ~ sqrt(1 - r/R), within 2 % (2 mm: 2.3 and 2.8 %)."""
     run = mpm.run_point(mpm.load(CONFIGS / "scenes" / "chocolate_pour.yaml", {"grid.cell": cell}))
     assert run.outcome.ok
     assert run.finals["radius_99"] == pytest.approx(0.9745 * 64.4e-3, rel=0.02) and run.finals["radius_95"] == pytest.approx(0.9240 * 64.4e-3, rel=0.02)

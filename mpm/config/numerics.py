@@ -70,6 +70,7 @@ class Fbar(Kind):
     """Volume changes averaged over the grid, against volumetric locking."""
 
     kind: ClassVar[str] = "fbar"
+    own: Fraction = doc(0.02, description="share of its own volume change that a particle keeps; without any, a body that flows far comes apart")
 
 
 class Repair(Kind):

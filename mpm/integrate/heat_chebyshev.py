@@ -23,6 +23,7 @@ from mpm.integrate.heat_step import conduct, gather_heat, over_nodes, reach, sca
 from mpm.integrate.pieces import exchange, place
 from mpm.integrate.timestep import SUBSTEPS
 from mpm.jit import kernel, role
+from mpm.materials.laws import Constant
 from mpm.state import Isothermal, Thermal
 from mpm.transfer import CHUNK
 
@@ -54,6 +55,42 @@ def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
 
 @advance_stabilised.register(Thermal)
 def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
+    return stabilised_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, count, blend, affine)
+
+
+@role
+def stabilised_by_law(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
+    """heat_chebyshev of a body with heat, by the law of its specific heat: heat_latent.py where it follows temperature."""
+    raise TypeError(f"{type(alpha).__name__} is no law of temperature")
+
+
+@kernel
+def recurrence(count):
+    """Rows (mu, nu, step, lag) of the stages: y_k = mu y_k-1 + nu y_k-2 + (1 - mu - nu) y_0 + step dt f(y_k-1) - lag dt f(y_0), the first mu dt f(y_0)."""
+    terms = np.zeros((count, 4))
+    w0 = 1.0 + DAMPING / count**2
+    t1 = w0 * w0 - 1.0
+    arg = count * np.log(w0 + np.sqrt(t1))
+    w1 = np.sinh(arg) * t1 / (np.cosh(arg) * count * np.sqrt(t1) - w0 * np.sinh(arg))
+    b1 = 1.0 / (2.0 * w0) ** 2
+    b2 = b1
+    terms[0, 0] = w1 * b1
+    z1, z2, dz1, dz2, d2z1, d2z2 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
+    for k in range(1, count):
+        z = 2.0 * w0 * z1 - z2
+        dz = 2.0 * w0 * dz1 - dz2 + 2.0 * z1
+        d2z = 2.0 * w0 * d2z1 - d2z2 + 4.0 * dz1
+        b = d2z / dz**2
+        mu, nu = 2.0 * w0 * b / b1, -b / b2
+        step = mu * w1 / w0
+        terms[k, 0], terms[k, 1], terms[k, 2], terms[k, 3] = mu, nu, step, (1.0 - z1 * b1) * step
+        b2, b1 = b1, b
+        z2, z1, dz2, dz1, d2z2, d2z1 = z1, z, dz1, dz, d2z1, d2z
+    return terms
+
+
+@stabilised_by_law.register(Constant)
+def _(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
     shape, x = extents(space), body.particles.x
     box = reach(space, x)
     capacity, start, rate, first, before, last, theta = nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6]
@@ -67,35 +104,21 @@ def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
     conduct(space, body, thermal, start, rate, dt, work)
     q0 = exchange(body, space, pieces, thermal, start, rate, dt, 0.0, work)
     fold(rate.reshape(-1, 1), 0, shape, box, walls)
-    w0 = 1.0 + DAMPING / count**2
-    t1 = w0 * w0 - 1.0
-    arg = count * np.log(w0 + np.sqrt(t1))
-    w1 = np.sinh(arg) * t1 / (np.cosh(arg) * count * np.sqrt(t1) - w0 * np.sinh(arg))
-    b1 = 1.0 / (2.0 * w0) ** 2
-    b2 = b1
-    mu = w1 * b1
+    terms = recurrence(count)
+    mu = terms[0, 0]
     combine(shape, box, capacity, rate, first, start, start, start, last, 0.0, 0.0, 1.0, 0.0, mu, True)
     q_before, q_last, t_before, t_last = 0.0, mu * q0, 0.0, mu
-    z1, z2, dz1, dz2, d2z1, d2z2 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
-    for k in range(2, count + 1):
+    for k in range(1, count):
+        mu, nu, step, lag = terms[k, 0], terms[k, 1], terms[k, 2], terms[k, 3]
         unfold(last.reshape(-1, 1), 0, shape, box, walls)
-        z = 2.0 * w0 * z1 - z2
-        dz = 2.0 * w0 * dz1 - dz2 + 2.0 * z1
-        d2z = 2.0 * w0 * d2z1 - d2z2 + 4.0 * dz1
-        b = d2z / dz**2
-        mu, nu = 2.0 * w0 * b / b1, -b / b2
-        step = mu * w1 / w0
-        lag = (1.0 - z1 * b1) * step
         conduct(space, body, thermal, last, rate, dt, work)
         taken = exchange(body, space, pieces, thermal, last, rate, dt, t_last, work)
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
-        older = start if k == 2 else before
+        older = start if k == 1 else before
         combine(shape, box, capacity, rate, first, last, older, start, theta, mu, nu, 1.0 - mu - nu, step, -lag, False)
         before, last, theta = last, theta, before
         q_before, q_last = q_last, mu * q_last + nu * q_before + step * taken - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
-        b2, b1 = b1, b
-        z2, z1, dz2, dz1, d2z2, d2z1 = z1, z, dz1, dz, d2z1, d2z
     unfold(last.reshape(-1, 1), 0, shape, box, walls)
     gather_heat(space, x, thermal, start, last, blend, affine, work)
     for field in range(ROWS):

@@ -19,7 +19,7 @@ from mpm.integrate.heat_matrix import conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.pieces import load_piece, place, temperature_at
 from mpm.jit import kernel, role
-from mpm.materials.laws import value
+from mpm.materials.laws import Constant, value
 from mpm.state import PAD, Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
@@ -45,6 +45,17 @@ def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
 
 @advance_implicit.register(Thermal)
 def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    return implicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
+
+
+@role
+def implicit_by_law(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+    """heat_implicit of a body with heat, by the law of its specific heat: one linear solution a stage where it is constant, heat_latent.py elsewhere."""
+    raise TypeError(f"{type(alpha).__name__} is no law of temperature")
+
+
+@implicit_by_law.register(Constant)
+def _(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
     shape = extents(space)
     x = body.particles.x
     box = reach(space, x)

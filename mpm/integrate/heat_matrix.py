@@ -31,37 +31,38 @@ def image(i, n, low, high):
 
 
 @role
-def nodes_of(space, x, p, walls, at, w, g):
-    """Numbers at (D, M) of the nodes that particle p reaches, weights w (M,) and gradients g (D, M)."""
+def nodes_of(space, x, p, walls, at, w, g, d):
+    """Numbers at (D, M) of the nodes that particle p reaches, weights w (M,), gradients g (D, M) and ways d (D, M) from the particle to them [m]."""
     raise TypeError(f"no nodes of {type(space).__name__}")
 
 
 @nodes_of.register(Line)
-def _(space, x, p, walls, at, w, g):
-    i0, wx, gx, _, _ = stencil(space.basis, x[p, 0] / space.h)
+def _(space, x, p, walls, at, w, g, d):
+    i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
     for i in range(len(wx)):
         at[0, i] = image(i0 + i, space.n0, walls[0, 0], walls[0, 1])
-        w[i], g[0, i] = wx[i], gx[i] / space.h
+        w[i], g[0, i], d[0, i] = wx[i], gx[i] / space.h, dx[i] * space.h
 
 
 @nodes_of.register(Plane)
 @nodes_of.register(Axisymmetric)
-def _(space, x, p, walls, at, w, g):
-    i0, wx, gx, _, _ = stencil(space.basis, x[p, 0] / space.h)
-    j0, wy, gy, _, _ = stencil(space.basis, x[p, 1] / space.h)
+def _(space, x, p, walls, at, w, g, d):
+    i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
+    j0, wy, gy, dy, _ = stencil(space.basis, x[p, 1] / space.h)
     m = 0
     for i in range(len(wx)):
         for j in range(len(wy)):
             at[0, m], at[1, m] = image(i0 + i, space.n0, walls[0, 0], walls[0, 1]), image(j0 + j, space.n1, walls[1, 0], walls[1, 1])
             w[m], g[0, m], g[1, m] = wx[i] * wy[j], gx[i] * wy[j] / space.h, wx[i] * gy[j] / space.h
+            d[0, m], d[1, m] = dx[i] * space.h, dy[j] * space.h
             m += 1
 
 
 @nodes_of.register(Volume)
-def _(space, x, p, walls, at, w, g):
-    i0, wx, gx, _, _ = stencil(space.basis, x[p, 0] / space.h)
-    j0, wy, gy, _, _ = stencil(space.basis, x[p, 1] / space.h)
-    k0, wz, gz, _, _ = stencil(space.basis, x[p, 2] / space.h)
+def _(space, x, p, walls, at, w, g, d):
+    i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
+    j0, wy, gy, dy, _ = stencil(space.basis, x[p, 1] / space.h)
+    k0, wz, gz, dz, _ = stencil(space.basis, x[p, 2] / space.h)
     m = 0
     for i in range(len(wx)):
         for j in range(len(wy)):
@@ -70,6 +71,7 @@ def _(space, x, p, walls, at, w, g):
                 at[2, m] = image(k0 + k, space.n2, walls[2, 0], walls[2, 1])
                 w[m] = wx[i] * wy[j] * wz[k]
                 g[0, m], g[1, m], g[2, m] = gx[i] * wy[j] * wz[k] / space.h, wx[i] * gy[j] * wz[k] / space.h, wx[i] * wy[j] * gz[k] / space.h
+                d[0, m], d[1, m], d[2, m] = dx[i] * space.h, dy[j] * space.h, dz[k] * space.h
                 m += 1
 
 
@@ -112,14 +114,14 @@ def matrix(space, shape, x, flow, pieces, met, capacity, each, dt, walls):
     rows = np.zeros((len(each), size))
     for k in range(len(each)):
         rows[k, 0] = capacity[each[k]]
-    at, w, g, t = np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros(M)
+    at, w, g, d, t = np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros((D, M)), np.zeros(M)
     for p in range(x.shape[0]):
-        nodes_of(space, x, p, walls, at, w, g)
+        nodes_of(space, x, p, walls, at, w, g, d)
         for k in range(D):
             add(rows, number, shape, width, at, g[k], dt * flow[p])
     owner, area, offset = pieces
     for s in range(len(owner)):
-        nodes_of(space, x, owner[s], walls, at, w, g)
+        nodes_of(space, x, owner[s], walls, at, w, g, d)
         for a in range(M):
             t[a] = w[a]
             for k in range(D):

@@ -2,7 +2,7 @@
 
 C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
 C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~: integrate/pieces.py
-h_p += alpha [ sum w d(theta_i) + blend (sum w theta_i - theta_p) ],   theta_p = theta(h_p),   c_p = affine sum w theta_i+ d/(sum w d^2)
+theta_p += sum w d(theta_i) + blend (sum w theta_i - theta_p),   c_p = affine sum w theta_i+ d/(sum w d^2)      alpha(theta): heat_latent.py
 
 Both w and w~ sum to one over the nodes, and grad(w) to nothing, so the heat of the particles changes by exactly what the surface exchanged,
 whatever alpha is. blend = 1 and affine = 1 is APIC; blend = affine = 0 is FLIP; blend = 1, affine = 0 is PIC.
@@ -18,7 +18,7 @@ from mpm.boundary.walls import clear, empty, fold, unfold
 from mpm.heat.local import rise
 from mpm.integrate.pieces import exchange, place
 from mpm.jit import kernel, role
-from mpm.materials.laws import value
+from mpm.materials.laws import Constant, value
 from mpm.state import Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
@@ -44,6 +44,17 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
 
 @advance_heat.register(Thermal)
 def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+    return explicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine)
+
+
+@role
+def explicit_by_law(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+    """heat_step of a body with heat, by the law of its specific heat: heat_latent.py where it follows temperature."""
+    raise TypeError(f"{type(alpha).__name__} is no law of temperature")
+
+
+@explicit_by_law.register(Constant)
+def _(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     shape = extents(space)
     x, m = body.particles.x, body.particles.m
     box = reach(space, x)

@@ -237,7 +237,8 @@ def build(experiment, exact=None) -> Scene:
     if getattr(exact, "starts", False):
         begin(bodies, exact, zero, space.h)
     if experiment.method.locking is not None:
-        bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))))) for body in bodies)
+        own = float(experiment.method.locking.own)
+        bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))), own)) for body in bodies)
     heat = heat_method(experiment)
     if isinstance(exact, Motion):
         first, exact = exact.begin(bodies[0])

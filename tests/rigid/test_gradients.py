@@ -67,7 +67,7 @@ def test_a_sphere_is_the_same_in_three_dimensions_and_axisymmetric(series, bi):
 def test_a_sphere_of_twelve_cells_a_radius(series, bi):
     """Order 3: the error of six cells falls by five at least."""
     run = sphere(bi, 12, tolerance=1e-5)
-    assert run.unknowns > 12_000 and balanced(run)
+    assert run.unknowns > 11_000 and balanced(run)
     assert series.rms(run, lambda r: 300 + series.sphere(r, 0.2, bi), lambda x: np.linalg.norm(x - CENTRE, axis=1)) < 1e-5
 
 

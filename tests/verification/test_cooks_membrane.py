@@ -38,7 +38,7 @@ def test_half_the_cell_and_locking(points):
     """Tip with F-bar -1.5 and -0.5 %, without -12.6 and -5.3 %: what F-bar does with a cell takes a quarter of it without."""
     free, locked = (
         [run.finals["error_tip"] for run in points("cooks_membrane", "grid.cell", (4.0, 2.0), {"output.every": 5.0, "method.locking": locking})]
-        for locking in ({"fbar": {}}, None)
+        for locking in ({"fbar": {"own": 0}}, None)
     )
     assert abs(free[1]) < 0.006 and np.log2(free[0] / free[1]) > cooks_membrane.ORDER
     assert locked[0] < -0.11 and locked[1] < -0.045
