@@ -73,9 +73,9 @@ def execute(
 
         gather = Gather(store, plan, lines, reporter.note)
         supervisor = Engine(store, points, lines, options, reporter, gather)
-        reporter.start(points.total, points.total - int(points.times[supervisor.due.numbers].sum()), options.jobs)
         with signals(supervisor.signal):
             try:
+                reporter.start(points.total, points.total - int(points.times[supervisor.due.numbers].sum()), options.jobs)
                 if supervisor.due:
                     if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due.first].experiment):
                         reporter.note(warning)
