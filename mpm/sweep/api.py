@@ -21,7 +21,7 @@ from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Points, counts, exit_code
+from mpm.sweep.tally import Points, counts, exit_code, stale
 
 
 def default_out(experiment: Any) -> Path:
@@ -76,6 +76,8 @@ def execute(
         with signals(supervisor.signal):
             try:
                 reporter.start(points.total, points.total - int(points.times[supervisor.due.numbers].sum()), options.jobs)
+                if others := 0 if options.rerun in ("stale", "all") else len(stale(lines)):
+                    reporter.note(f"{others} of the points that are there were made by other source; --rerun stale runs them again")
                 if supervisor.due:
                     if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due.first].experiment):
                         reporter.note(warning)

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm.records.provenance import source_hash
 from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan, skipped
 from mpm.sweep.lock import owner, said_owner
 from mpm.sweep.report import label
-from mpm.sweep.tally import counts
+from mpm.sweep.tally import counts, stale
 
 SLOWEST = 5
 
@@ -27,7 +26,6 @@ def status(out: Path) -> dict[str, Any]:
     ok = lines.by_status(ok=True)
     took = lines.rows["wall_time"][ok]
     slow = [points.ids[number] for number in ok[np.argsort(-took, kind="stable")[:SLOWEST]]]
-    other = np.flatnonzero(lines.rows["there"] & (lines.rows["source"] != lines.code(source_hash())))
     mean = float(took.mean()) if len(took) else None
     left, who = mean * found["pending"] if mean is not None else None, owner(store.out)
     begun = {path.stem for path in (store.out / "checkpoints").glob("*.checkpoint")}
@@ -36,7 +34,7 @@ def status(out: Path) -> dict[str, Any]:
         "name": about["name"],
         "points": sum(found.values()),
         "counts": found,
-        "stale": sorted(points.ids[number] for number in other),
+        "stale": sorted(points.ids[number] for number in stale(lines)),
         "damaged": damaged,
         "failures": [
             {"reason": why, "count": len(ids), "example": label(points.cases[ids[0]])} | {name: lines[ids[0]][name] for name in ("error", "advice", "run_id")}

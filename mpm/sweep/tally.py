@@ -97,8 +97,13 @@ def missing(points: Points, lines: Lines, rerun: str | None) -> np.ndarray:
     if rerun == "failed":
         again = lines.rows["status"] != OK
     elif rerun == "stale":
-        again = lines.rows["source"] != lines.code(source_hash())
+        again[stale(lines)] = True
     return np.flatnonzero(~there | again)
+
+
+def stale(lines: Lines) -> np.ndarray:
+    """Numbers of the points that other source made."""
+    return np.flatnonzero(lines.rows["there"] & (lines.rows["source"] != lines.code(source_hash())))
 
 
 def counts(points: Points, lines: Lines, skipped: int) -> dict[str, int]:

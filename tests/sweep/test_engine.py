@@ -77,7 +77,9 @@ def test_other_source_is_stale(config, tmp_path, monkeypatch):
     go(config([0.2, 0.5]), tmp_path / "out")
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 0
     monkeypatch.setattr("mpm.sweep.tally.source_hash", lambda: "other")
-    assert go(config([0.2, 0.5]), tmp_path / "out").ran == 0
+    ears = Ears()
+    assert execute(load(config([0.2, 0.5, 0.7])), tmp_path / "out", Options(jobs=0, runner="fake_runner"), ears).ran == 1
+    assert ears.told[0] == "2 of the points that are there were made by other source; --rerun stale runs them again"
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 2
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="all").ran == 2
 
