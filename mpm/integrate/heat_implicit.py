@@ -15,11 +15,12 @@ import numpy as np
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.walls import clear, fold, unfold
 from mpm.heat.exchange import meet
+from mpm.heat.many import specify
 from mpm.integrate.heat_matrix import conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.pieces import load_piece, place, temperature_at
 from mpm.jit import kernel, role
-from mpm.materials.laws import Constant, value
+from mpm.materials.laws import Constant
 from mpm.state import PAD, Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
@@ -130,7 +131,10 @@ def conductances(space, body, thermal, theta, work):
         count = min(CHUNK, len(out) - first)
         gather_scalar(space, p.x, first, count, theta, at, slope, grad)
         for i in range(count):
-            out[first + i] = p.J[first + i] * p.V0[first + i] * value(thermal.kappa, thermal.zero + at[i])
+            at[i] += thermal.zero
+        specify(thermal.kappa, at, count)
+        for i in range(count):
+            out[first + i] = p.J[first + i] * p.V0[first + i] * at[i]
     return out
 
 

@@ -15,10 +15,10 @@ import numpy as np
 from mpm.basis import stencil
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, unfold
-from mpm.heat.local import rise
+from mpm.heat.many import specify, warm_up
 from mpm.integrate.pieces import exchange, place
 from mpm.jit import kernel, role
-from mpm.materials.laws import Constant, value
+from mpm.materials.laws import Constant
 from mpm.state import Isothermal, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
@@ -119,7 +119,10 @@ def scatter_heat(space, x, m, thermal, capacity, heat, work):
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
         for p in range(count):
-            a[p] = m[first + p] * value(thermal.alpha, thermal.zero + thermal.theta[first + p])
+            a[p] = thermal.zero + thermal.theta[first + p]
+        specify(thermal.alpha, a, count)
+        for p in range(count):
+            a[p] *= m[first + p]
         scatter_scalar(space, x, first, count, a, zero, zero, capacity)
         for p in range(count):
             for k in range(D):
@@ -138,7 +141,10 @@ def conduct(space, body, thermal, theta, rate, dt, work):
         count = min(CHUNK, particles.x.shape[0] - first)
         gather_scalar(space, particles.x, first, count, theta, at, slope, grad)
         for p in range(count):
-            flow = -dt * particles.J[first + p] * particles.V0[first + p] * value(thermal.kappa, thermal.zero + at[p])
+            at[p] += thermal.zero
+        specify(thermal.kappa, at, count)
+        for p in range(count):
+            flow = -dt * particles.J[first + p] * particles.V0[first + p] * at[p]
             at[p] = 0.0
             for k in range(D):
                 grad[k, p] *= flow
@@ -156,11 +162,13 @@ def gather_heat(space, x, thermal, start, end, blend, affine, work):
         gather_scalar(space, x, first, count, start, before, slope, grad)
         gather_scalar(space, x, first, count, end, after, slope, grad)
         for p in range(count):
-            i = first + p
-            old = thermal.theta[i]
-            change = after[p] - before[p] + blend * (before[p] - old)
-            thermal.theta[i] = old + rise(thermal.alpha, thermal.zero + old, value(thermal.alpha, thermal.zero + old) * change)
+            old = thermal.theta[first + p]
+            after[p] = after[p] - before[p] + blend * (before[p] - old)
+            before[p] = thermal.zero + old
+        warm_up(thermal.alpha, before, after, count)
+        for p in range(count):
+            thermal.theta[first + p] += after[p]
             for k in range(D):
-                thermal.c[i, k] = affine * slope[k, p]
+                thermal.c[first + p, k] = affine * slope[k, p]
 
 

@@ -4,12 +4,34 @@ eps = 1/2 log(1 + B);  return map on the trace and the deviator's size;  heating
 In three dimensions without principal axes (mpm.isotropic), in a plane with those of its closed form. Neo-Hookean: react_neo_hookean.py.
 """
 
-from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.heat.local import latch, temperature, thermal_stress
+from mpm.heat.many import grow_warmer, heat_eight
 from mpm.integrate.deformation import carry_owners
 from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, deliver_plane, deliver_volume, fail
 from mpm.isotropic import exponential3, largest, logarithm3, lowest3, norm, split
 from mpm.jit import kernel, role
-from mpm.lanes import EIGHT, absolute, below, choose, expm1, fma, item, least, like, load8, log1p, maximum, minimum, most, peek, poke, splat8, sqrt, store
+from mpm.lanes import (
+    EIGHT,
+    absolute,
+    below,
+    choose,
+    expm1,
+    fma,
+    item,
+    least,
+    like,
+    load8,
+    log1p,
+    maximum,
+    minimum,
+    most,
+    peek,
+    poke,
+    put,
+    splat8,
+    sqrt,
+    store,
+)
 from mpm.materials import FLOW, Hencky, HenckyWarm, NoFlow, flow_lanes, moduli_lanes
 from mpm.outcome import INVERTED, RETURN_MAP
 from mpm.state import Expansion, GridHeating, Heating, Latched, NoExchange, NoExpansion, NoHeating, Softening, Surface
@@ -100,12 +122,21 @@ def blame(report, code, good, i, count):
 def heat_all(body, chunk, first, p, count, report):
     """Heat the particles p.. of the chunk by what they stretched (row GROW) and dissipated (row LOST); remember what they reached."""
     e, n, particles = chunk.e, chunk.e.shape[1], body.particles
-    for q in range(p, min(p + EIGHT, count)):
-        i, lost = first + q, float(peek(e, LOST * n + q))
-        V0 = peek(particles.V0, i)
-        gained = heat_locally(body.heating, body.thermal, i, peek(particles.m, i) / V0, peek(e, GROW * n + q), lost)
-        report[HEATED] += V0 * gained
-        report[DISSIPATED] += V0 * lost
+    gained = risen = splat8(0.0)
+    if warms(body.heating):
+        theta, density, stretched, lost = gained, gained, gained, gained  # in float64: a rise is a small difference
+        for k in range(EIGHT):
+            q = min(p + k, count - 1)
+            theta = put(theta, k, float(temperature(body.thermal, first + q)))
+            density = put(density, k, float(peek(particles.m, first + q) / peek(particles.V0, first + q)))
+            stretched, lost = put(stretched, k, float(peek(e, GROW * n + q))), put(lost, k, float(peek(e, LOST * n + q)))
+        gained, risen = heat_eight(body.heating, body.thermal, theta, density, stretched, lost)
+    for k in range(min(EIGHT, count - p)):
+        i, V0 = first + p + k, peek(particles.V0, first + p + k)
+        if warms(body.heating):
+            grow_warmer(body.thermal, i, item(risen, k))
+            report[HEATED] += V0 * item(gained, k)
+        report[DISSIPATED] += V0 * float(peek(e, LOST * n + p + k))
         latch(body.expansion, body.thermal, i)
 
 

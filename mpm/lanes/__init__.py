@@ -22,6 +22,7 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
     item(a, k), put(a, k, x)               lane k; lanes with x there
 
     logarithm, log1p, expm1, exponential(x)  to two ulp, without a library (functions.py has their ranges)
+    erf(x)                                 the same, to two ulp of one (erf.py)
 
 absolute, sqrt, minimum, maximum, below, choose, like precision and these four take numbers too, so that one source (mpm.tensors) serves lanes and numbers.
 In plain Python (NUMBA_DISABLE_JIT) lanes are small numpy arrays and every function does the same.
@@ -30,12 +31,13 @@ To add    a Python function, its type, its LLVM instruction: see `operation` in 
 
 from mpm.lanes.access import aligned, four, high, item, join, load4, load8, low, peek, poke, put, splat4, splat8, store, transposed
 from mpm.lanes.arithmetic import absolute, floor, fma, like, sqrt
+from mpm.lanes.erf import erf
 from mpm.lanes.functions import expm1, exponential, log1p, logarithm
 from mpm.lanes.order import below, choose, least, maximum, minimum, most, precision
 
 EIGHT = 8  # particles that pass at once
 
 __all__ = [
-    "EIGHT", "absolute", "aligned", "below", "choose", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like", "load4",
+    "EIGHT", "absolute", "aligned", "below", "choose", "erf", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like", "load4",
     "load8", "log1p", "logarithm", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8", "sqrt", "store", "transposed",
 ]  # fmt: skip

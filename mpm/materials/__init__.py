@@ -6,9 +6,10 @@ Roles (the law chooses the function; all work compiled and in plain Python)
           moduli(law) -> lam, mu
           flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
                                                                                       flow laws: no_flow, radial, clipped
-          moduli_lanes(law, theta), flow_lanes(law, trace, deviator, ...), values(law, theta): the same over lanes of eight particles (mpm.lanes)
+          moduli_lanes(law, theta), flow_lanes(law, trace, deviator, ...): the same over lanes of eight particles (mpm.lanes)
           warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
+          values(law, theta), enthalpies(law, theta), temperatures(law, h, guess)     over lanes: many
 Shapes    e: principal elastic Hencky strains [-]; t: principal Kirchhoff stresses [Pa], in the same order, any order
           thermal = gamma (Theta - Theta_0) [Pa], 0.0 without expansion; theta: temperature [K]; dt [s]
           dissipated, psi: energy per reference volume [J/m3]
@@ -20,6 +21,7 @@ To add    a file here that registers its NamedTuple with the roles of its kind, 
 from mpm.materials.clipped import EllipseClipped
 from mpm.materials.hencky import Hencky
 from mpm.materials.laws import Bump, Constant, Logistic, Table, table
+from mpm.materials.many import enthalpies, temperatures, values
 from mpm.materials.neo_hookean import NeoHookean
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
@@ -34,6 +36,6 @@ LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
     "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow",
-    "Porous", "Table", "energy", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes", "return_map", "settled",
-    "stress", "table", "temperature_of", "value", "warmed",
+    "Porous", "Table", "energy", "enthalpies", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes", "return_map", "settled",
+    "stress", "table", "temperature_of", "temperatures", "value", "values", "warmed",
 ]  # fmt: skip

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.jit import kernel
-from mpm.lanes import EIGHT, absolute, below, choose, exponential, item, like, put
-from mpm.materials.roles import enthalpy, temperature_of, value, values
+from mpm.lanes import absolute, below, choose, exponential, like
+from mpm.materials.roles import enthalpy, temperature_of, value
 
 SQRT2 = math.sqrt(2.0)
 SQRT2PI = math.sqrt(2.0 * math.pi)
@@ -128,24 +128,6 @@ def value_table(law, theta):
     return law.c[k, 0] + u * (law.c[k, 1] + u * (law.c[k, 2] + u * law.c[k, 3]))
 
 
-@values.register(Constant)
-def _(law, theta):
-    return like(theta, law.constant)
-
-
-@values.register(Bump)
-@values.register(Logistic)
-def _(law, theta):
-    return value(law, theta)
-
-
-@values.register(Table)
-def _(law, theta):
-    for k in range(EIGHT):
-        theta = put(theta, k, value(law, item(theta, k)))
-    return theta
-
-
 @enthalpy.register(Constant)
 def enthalpy_constant(law, theta):
     return law.constant * theta
@@ -187,6 +169,8 @@ def settle(law, h, low, high, theta):
         else:
             low = theta
         step = excess / value(law, theta)
+        if step != step:
+            return step  # a NaN, for the guards to see
         if abs(step) <= 1e-11 * abs(theta):  # a few nK: Newton's next step would be below round-off
             return theta - step
         theta = 0.5 * (low + high) if n >= 8 and n % 2 == 0 else between(low, high, theta - step)

@@ -78,6 +78,18 @@ def values(law, theta):
 
 
 @role(inline=True)
+def enthalpies(law, theta):
+    """`enthalpy` over lanes of temperatures [K]."""
+    raise missing(law, "enthalpies")
+
+
+@role(inline=True)
+def temperatures(law, h, guess):
+    """`temperature_of` over lanes."""
+    raise missing(law, "temperatures")
+
+
+@role(inline=True)
 def aspects(law, theta, J):
     """p0 over lanes of temperatures [K] and volume ratios [-]."""
     raise missing(law, "aspects")

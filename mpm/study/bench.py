@@ -7,6 +7,9 @@ v^2 and the spread of x after all steps, which agrees with another code's to 5 d
 To compare with another code honestly: the same scene and options, both pinned to one core (`taskset -c 0`) of an idle machine; whole runs of the one and
 of the other in turn, three rounds at least; ratios of medians, never a figure of today beside a figure of last week (the same binary drifts by 1.4
 between minutes); compiling apart; and look at `check` first: a faster wrong answer is no answer.
+
+`flops` is what a particle-step wants of multiplications and additions, counted by hand (mpm.study.limits), `peak_gflops` what the cores can multiply and
+add at most in that precision, measured here, `fma_share` the one over the other at the median step.
 """
 
 import time
@@ -88,6 +91,7 @@ def cube(options: Options):
 def bench(options: Options) -> dict:
     """Run and time; the fields of the JSON line."""
     from mpm.simulation import Clock, advance_block, work_arrays
+    from mpm.study.limits import gflops, operations
 
     scene, h = cube(options), 1.0 / options.n
     scene.threads = options.threads
@@ -108,8 +112,10 @@ def bench(options: Options) -> dict:
         began = time.perf_counter()
         run(options.steps)
         blocks.append((time.perf_counter() - began) / options.steps)
-    about = {"first_s": round(first, 3), "threads": options.threads if scene.order.shared else 1}
-    return about | told(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
+    threads = options.threads if scene.order.shared else 1
+    found = {"first_s": round(first, 3), "threads": threads} | told(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
+    flops, peak = operations(scene), gflops(scene.bodies[0].particles.x.dtype) * threads
+    return found | {"flops": flops, "peak_gflops": round(peak, 1), "fma_share": round(flops * found["Mpps_med"] / 1e3 / peak, 3)}
 
 
 def told(options: Options, particles, blocks: np.ndarray, shift: float) -> dict:

@@ -1,11 +1,10 @@
 """`mpm bench CONFIG`: where the time of a particle-step goes, what each physics costs, and how far the machine's own limits are.
 
 Phases are timed on the config's own particles after some steps, each over and over by itself, so their sum is not quite the step: what one phase leaves in
-the cache helps the next. With and without: the same config with a section taken out, timed in turn with the whole, medians of ROUNDS.
+the cache helps the next. With and without: the same config with a section taken out, timed in turn with the whole, medians. Limits, and how the operations
+of a step are counted: mpm.study.limits.
 """
 
-import statistics
-import time
 from typing import Any
 
 import numpy as np
@@ -17,59 +16,14 @@ from mpm.integrate.respond import respond
 from mpm.integrate.strain import REPORT
 from mpm.integrate.timestep import limits
 from mpm.jit import kernel
-from mpm.lanes import fma, load8, most, splat8
 from mpm.runner import run_point
 from mpm.scene.build import build
 from mpm.simulation import BLOCK, BLOCK_WORK, Clock, advance_block, warm_bodies, work_arrays
+from mpm.study.limits import operations, peaks, seconds
 from mpm.sweep.cases import plan
 from mpm.transfer import CHUNK, collect, lay_down, new_chunk, spread
 
-ROUNDS, LEAST = 5, 0.05  # timings of a thing, and seconds that one lasts at least
 WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansion": ("expansion", "heating"), "heating": ("heating",)}
-
-
-@kernel
-def multiply_add(times):
-    """160 flops a turn in ten independent chains: what the multiply-add units can do."""
-    from_one = np.ones(8)
-    a = load8(from_one, 0)
-    b, c, d, e, f, g, h, i, j = a, a, a, a, a, a, a, a, a
-    half = splat8(0.5)
-    for _ in range(times):
-        a, b, c, d, e = fma(a, half, half), fma(b, half, half), fma(c, half, half), fma(d, half, half), fma(e, half, half)
-        f, g, h, i, j = fma(f, half, half), fma(g, half, half), fma(h, half, half), fma(i, half, half), fma(j, half, half)
-    return most(a + b + c + d + e + f + g + h + i + j)
-
-
-@kernel
-def triad(a, b, c):
-    """24 bytes a number."""
-    for i in range(a.shape[0]):
-        a[i] = b[i] + 0.5 * c[i]
-
-
-def seconds(call) -> float:
-    """Median time of a call, repeated until it lasts LEAST; the first call is a warm-up."""
-    call()
-    began = time.perf_counter()
-    call()
-    repeats = max(1, round(LEAST / max(time.perf_counter() - began, 1e-9)))
-    found = []
-    for _ in range(ROUNDS):
-        began = time.perf_counter()
-        for _ in range(repeats):
-            call()
-        found.append((time.perf_counter() - began) / repeats)
-    return statistics.median(found)
-
-
-def peaks() -> dict[str, float]:
-    """GFLOP/s of multiply-adds in float64 and GB/s of a triad too large for the caches, of one core."""
-    arrays = np.ones((3, 8_000_000))
-    return {
-        "gflops": 160 * 100_000 / seconds(lambda: multiply_add(100_000)) / 1e9,
-        "gbytes": 24 * arrays.shape[1] / seconds(lambda: triad(*arrays)) / 1e9,
-    }
 
 
 @kernel
@@ -178,7 +132,8 @@ def phases(experiment, threads: int = 1) -> dict:
     if experiment.grid.dimension == 0 or not experiment.moving:
         return rigid(experiment)
     whole = Bench(experiment, threads)
-    found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "peaks": peaks(), "without_ns": {}}
+    found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "without_ns": {}}
+    found["precision"], found["peaks"] = whole.buffers[0].dtype.name, peaks(whole.buffers[0].dtype)
     if whole.now.heat:
         found["heat_step_ns"] = 1e9 * seconds(whole.heat) / whole.particles
     for name, sections in WITHOUT.items():
@@ -188,6 +143,8 @@ def phases(experiment, threads: int = 1) -> dict:
     found["threads"] = threads if whole.scene.order.shared else 1
     state = sum(array.nbytes for body in whole.scene.bodies for array in body.particles)
     found["state_bytes"] = state / whole.particles
+    found["operations"] = operations(whole.scene)
+    found["fma_share"] = found["operations"] / found["step_ns"] / found["peaks"]["gflops"] / found["threads"]
     found["bandwidth_share"] = 2 * found["state_bytes"] / found["step_ns"] / found["peaks"]["gbytes"]
     return found
 
@@ -207,6 +164,7 @@ def table(found: dict) -> str:
     if "heat_step_ns" in found:
         lines.append(f"  heat     {found['heat_step_ns']:7.1f} ns a particle and heat step, at its own pace")
     lines += [f"  without {name}: {value:.1f} ns a particle-step" for name, value in found["without_ns"].items()]
-    lines.append(f"one core here: {found['peaks']['gflops']:.0f} GFLOP/s of multiply-adds (float64), {found['peaks']['gbytes']:.1f} GB/s;")
-    lines.append(f"reading and writing the state takes {100 * found['bandwidth_share']:.0f} % of that bandwidth")
+    lines.append(f"one core here: {found['peaks']['gflops']:.0f} GFLOP/s of multiply-adds ({found['precision']}), {found['peaks']['gbytes']:.1f} GB/s;")
+    lines.append(f"the {found['operations']} operations of transfer and elastic law that it wants make {100 * found['fma_share']:.0f} % of the")
+    lines.append(f"multiply-adds, reading and writing the state takes {100 * found['bandwidth_share']:.0f} % of the bandwidth")
     return "\n".join(lines)

@@ -6,11 +6,11 @@ from states import states
 
 from mpm.jit import kernel
 from mpm.lanes import load8, store
-from mpm.materials import Bump, Constant, Logistic, Porous, table, value
+from mpm.materials import Bump, Constant, Logistic, Porous, enthalpies, enthalpy, table, temperature_of, temperatures, value, values
 from mpm.materials.clipped import clipped_lanes, map_clipped
 from mpm.materials.porous import aspect
 from mpm.materials.radial import map_radial, radial_lanes
-from mpm.materials.roles import aspects, values
+from mpm.materials.roles import aspects
 
 
 @kernel
@@ -148,6 +148,79 @@ def test_laws_of_temperature(name, real):
     expected = np.array([value(LAWS[name], float(t)) for t in theta])
     few = 16 * np.finfo(real).eps * (1 if real is np.float64 else 40)  # in float32 theta - at is worth 1e-5 K
     assert np.allclose(out[0], expected, rtol=few, atol=few * np.abs(expected).max()) and np.array_equal(out[0], out[1])
+
+
+@kernel
+def ask_eight(law, a, guess, out):
+    """Rows value, enthalpy, and the temperature of the enthalpies a."""
+    n = len(guess)
+    for p in range(0, n, 8):
+        store(out, p, values(law, load8(a, p)))
+        store(out, n + p, enthalpies(law, load8(a, p)))
+        store(out, 2 * n + p, temperatures(law, load8(a, n + p), load8(guess, p)))
+
+
+@kernel
+def ask_each(law, a, guess, out):
+    for k in range(len(guess)):
+        out[0, k], out[1, k], out[2, k] = value(law, a[0, k]), enthalpy(law, a[0, k]), temperature_of(law, a[1, k], guess[k])
+
+
+KNOTS = (290.0, 300.0, 303.0, 340.0, 371.0, 374.0, 420.0)
+HEATS = (2100.0, 2100.0, 5200.0, 2600.0, 2500.0, 60000.0, 2200.0)
+CAPACITIES = {
+    "constant": Constant(2247.0),
+    "linear": table(KNOTS, HEATS),
+    "pchip": table(KNOTS, HEATS, "pchip"),
+    "two points": table(KNOTS[:2], HEATS[1:3]),
+    "more than it walks": table(np.linspace(280.0, 420.0, 60), 2000.0 + 500.0 * np.sin(np.arange(60))),
+    "bump": Bump(2247.0, 2.46e5, 372.75, 1.5),
+    "sharp": Bump(2000.0, 3.3e5, 373.15, 1e-3),
+    "dip": Bump(4000.0, -2000.0, 330.0, 2.0),
+    "up": Logistic(2000.0, 4000.0, 345.0, 3.0),
+    "down": Logistic(4000.0, 1500.0, 345.0, 0.2),
+}
+
+
+@pytest.mark.parametrize("name", CAPACITIES)
+def test_heat_and_its_inverse(name):
+    """Ordinary temperatures, those at the points of tables and within steps and bumps, and 1e-3 to 1e6 K; guesses near and far."""
+    law, rng = CAPACITIES[name], np.random.default_rng(11)
+    n = MANY // 8 if MANY > 10_000 else MANY // 40
+    special = np.array([*KNOTS, 280.0, 330.0, 345.0, 372.75, 373.15])
+    parts = (rng.uniform(250, 450, 4 * n), rng.choice(special, n), rng.choice(special, 2 * n) + rng.normal(size=2 * n) * 1e-3, 10 ** rng.uniform(-3, 6, n))
+    theta = np.concatenate(parts)
+    guess = theta + rng.normal(size=len(theta)) * 10.0 ** rng.integers(-6, 2, len(theta))
+    a, out, one = np.stack([theta, [enthalpy(law, t) for t in theta]]), np.zeros((3, len(theta))), np.zeros((3, len(theta)))
+    ask_eight(law, a, guess, out)
+    ask_each(law, a, guess, one)
+    few = 4 * np.finfo(float).eps
+    assert (relative(out[0], one[0]) <= few).all()
+    size = one[0].max() * theta + 4e5  # of the terms: enthalpies are nothing where they begin
+    assert (np.abs(out[1] - one[1]) <= few * size).all()
+    assert (np.abs(out[2] - one[2]) <= 8 * few * size / one[0].min()).all()  # the terms of a steep cubic are several times its values
+
+
+@pytest.mark.parametrize("name", CAPACITIES)
+def test_a_nan_stays_in_its_lane(name):
+    a = np.stack([np.full(8, 350.0), np.full(8, enthalpy(CAPACITIES[name], 350.0))])
+    a[:, 3] = np.nan
+    out, rest = np.zeros((3, 8)), np.arange(8) != 3
+    ask_eight(CAPACITIES[name], a, np.full(8, 349.0), out)
+    assert np.isnan(out[:, 3]).all() == (name != "constant") and np.isfinite(out[:, rest]).all()
+    assert np.allclose(out[2, rest], 350.0, rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", CAPACITIES)
+def test_heat_in_single_precision(name):
+    """The inverse gives the temperature back to what an enthalpy of float32 can say of it."""
+    theta = np.random.default_rng(12).uniform(295, 415, 4096).astype(np.float32)
+    law, out = CAPACITIES[name], np.zeros((3, 4096), np.float32)
+    h = np.array([enthalpy(law, float(t)) for t in theta])
+    ask_eight(law, np.ascontiguousarray([theta, h], np.float32), theta + np.float32(0.5), out)
+    least = min(value(law, float(t)) for t in np.linspace(295, 415, 4001))
+    assert (np.abs(out[1] - h) <= 32 * np.finfo(np.float32).eps * (np.abs(h).max() + 400 * least)).all() or name == "sharp"
+    assert (np.abs(out[2] - theta) <= 32 * np.finfo(np.float32).eps * (np.abs(h).max() / least + 400)).all()
 
 
 def test_aspect_of_pores():
