@@ -126,6 +126,7 @@ ELSEWHERE = {
     "impulse_parts(Mls)", "carry(Xpic)", "wants_change(Xpic)", "sharpen(Xpic)", "what_is_lost(Isothermal)", "what_is_lost(Thermal)",
     "nodes_of(Plane)", "nodes_of(Axisymmetric)", "nodes_of(Volume)", "advance_heat(Isothermal)", "advance_implicit(Isothermal)",
     "meet(NoExchange)", "place(NoExchange)", "radiate(Radiation)", "rise(Bump)", "rise(Logistic)", "rise(Table)",
+    "rises(Bump)", "rises(Logistic)", "rises(Table)", "heat_eight(NoHeating)", "heat_eight(GridHeating)", "grow_warmer(Isothermal)",  # tests/heat/test_many.py
     "thermal_stress(Latched)", "latch(Latched)", "flows(EllipseClipped)", "flows(EllipseRadial)",
     "act(Source)", "take_up(Isothermal)", "take_up(Thermal)",  # tests/verification/test_manufactured.py
     "thermal_stress(Softening)", "latch(Softening)",  # tests/point/test_laws.py

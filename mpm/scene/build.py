@@ -98,8 +98,11 @@ def sample(experiment, body):
 
 
 def by_nodes(cut, h: float):
-    """Particles in the order of the nodes nearest to them, so that those that share a stencil follow one another (transfer/rows.py)."""
-    nearest = np.floor(cut.centroid / h + 0.5)
+    """Particles in the order of the nodes nearest to them, so that those that share a stencil follow one another (transfer/rows.py).
+
+    Half-way between two nodes it is always the upper one, whatever round-off says.
+    """
+    nearest = np.floor(cut.centroid / h + 0.5 + 1e-9)
     order = np.lexsort(nearest.T[::-1])
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
