@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import directions, extents
+from mpm.boundary.blocks import new_blocks
 from mpm.guards import Guards, explain
 from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.bounds import bounds_of, keep_between
@@ -165,14 +166,14 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
 
 
 def work_arrays(scene: Scene):
-    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, scalars where there is heat."""
+    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, their boxes and blocks, scalars where there is heat."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
     dtype = scene.bodies[0].particles.x.dtype
     nodes = aligned((2, n, columns(D)), dtype)
     force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
     rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else STABILISED_ROWS
-    return nodes, force, np.zeros((2, 3, 2), np.int64), np.zeros((rows, n if warm else 0))
+    return nodes, force, (np.zeros((2, 3, 2), np.int64), new_blocks(n)), np.zeros((rows, n if warm else 0))
 
 
 def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, look) -> Outcome:
@@ -251,14 +252,14 @@ def lost_to_grid(scene: Scene, body, rows):
 
 def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) -> None:
     """One block of `steps` steps of dt; clock.reports tells of it."""
-    nodes, force, boxes, _ = buffers
+    nodes, force, (boxes, blocks), _ = buffers
     scene.order.refresh()
     clock.reset()
     astray = False
     if scene.order.sliced:
-        astray = advance_slabs(scene, nodes, force, boxes, float(dt), steps, clock.reports)
+        astray = advance_slabs(scene, nodes, force, boxes, blocks, float(dt), steps, clock.reports)
     else:
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, scene.walls, scene.gravity, dt, steps, clock.reports)
+        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, scene.walls, scene.gravity, dt, steps, clock.reports)
     scene.order.passed(math.sqrt(max(clock.reports[:, SPEED])) * dt * steps, steps, astray)
 
 

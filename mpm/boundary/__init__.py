@@ -4,7 +4,7 @@ Walls stand on grid lines. A slip or stick wall is a mirror: what particles put 
 inside, and nodal velocities are continued outside by reflection, so a linear field is exact up to the wall (setting wall nodes to
 zero alone would flatten it there). A contact wall only stops nodes at and behind it from moving outwards.
 
-May use   mpm.jit, mpm.state                          May not  see particles or laws
+May use   mpm.jit, mpm.lanes, mpm.state                        May not  see particles or laws
 To add    a kind: a number here, its rule in walls.py, its name in config
 """
 

@@ -9,6 +9,7 @@ Fails when: a body at a contact wall is sampled by fewer than two particles a ce
 """
 
 from mpm.boundary import CONTACT, STICK
+from mpm.boundary.blocks import BLOCK
 from mpm.jit import kernel
 from mpm.lanes import poke
 from mpm.state import PAD
@@ -21,8 +22,11 @@ def held(kind, axis, component):
 
 
 @kernel
-def fold(nodes, components, shape, box, walls):
-    """Fold `components` vector components, and every further column (mass) evenly, of the ghost planes on to their images. Grows `box` to the images."""
+def fold(nodes, components, shape, box, walls, blocks=None):
+    """Fold `components` vector components, and every further column (mass) evenly, of the ghost planes on to their images. Grows `box` to the images.
+
+    With `blocks` (mpm.boundary.blocks) what is not marked is known to be zero, and what is written is marked; `unfold` likewise.
+    """
     for axis in range(3):
         if shape[axis] == 1:
             continue
@@ -35,11 +39,11 @@ def fold(nodes, components, shape, box, walls):
                 if not (box[axis, 0] <= wall + out < box[axis, 1]):
                     continue
                 box[axis, 0], box[axis, 1] = min(box[axis, 0], wall - out), max(box[axis, 1], wall - out + 1)
-                mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], True)
+                mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], True, blocks)
 
 
 @kernel
-def unfold(nodes, components, shape, box, walls):
+def unfold(nodes, components, shape, box, walls, blocks=None):
     """Continue nodal values to the ghost planes by reflection."""
     for axis in range(2, -1, -1):
         if shape[axis] == 1:
@@ -51,11 +55,11 @@ def unfold(nodes, components, shape, box, walls):
             for k in range(1, PAD + 1):
                 out = -k if side == 0 else k
                 if box[axis, 0] <= wall + out < box[axis, 1]:
-                    mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], False)
+                    mirror_plane(nodes, components, shape, box, axis, wall + out, wall - out, walls[axis, side], False, blocks)
 
 
 @kernel
-def mirror_plane(nodes, components, shape, box, axis, ghost, image, kind, add):
+def mirror_plane(nodes, components, shape, box, axis, ghost, image, kind, add, blocks):
     """Add the ghost plane to its image (`add`), or copy the image to the ghost plane."""
     a, b = (axis + 1) % 3, (axis + 2) % 3
     stride = (shape[1] * shape[2], shape[2], 1)
@@ -63,6 +67,10 @@ def mirror_plane(nodes, components, shape, box, axis, ghost, image, kind, add):
         for j in range(box[b, 0], box[b, 1]):
             base = i * stride[a] + j * stride[b]
             g, n = base + ghost * stride[axis], base + image * stride[axis]
+            if blocks is not None:
+                if blocks[(g if add else n) // BLOCK] == 0:
+                    continue
+                blocks[(n if add else g) // BLOCK] = 1
             for c in range(nodes.shape[1]):
                 sign = -1.0 if c < components and held(kind, axis, c) else 1.0
                 if add:

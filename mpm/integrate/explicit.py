@@ -12,7 +12,8 @@ from numba import literal_unroll
 
 from mpm.basis import room
 from mpm.boundary import directions, extents
-from mpm.boundary.walls import clear, empty, fold, impose, unfold
+from mpm.boundary.blocks import BLOCK, forget, mark_box, run, span, thin, wipe
+from mpm.boundary.walls import empty, fold, impose, unfold
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.load import act
 from mpm.integrate.locking import any_averages, average_all, relax
@@ -20,6 +21,7 @@ from mpm.integrate.respond import respond
 from mpm.integrate.sharpen import sharpen
 from mpm.integrate.sound import sound
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
+from mpm.integrate.touch import reaches, touch
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE, UNSOUND
@@ -28,61 +30,78 @@ from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick
 
 
 @kernel
-def advance(space, gradient, scheme, bodies, nodes, force, boxes, walls, gravity, dt, steps, reports):
+def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, steps, reports):
     """`steps` steps of `dt` of all bodies on one grid.
 
     nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
-    boxes (2, 3, 2), walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py. Returns early where a particle fails.
+    boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py.
+    Returns early where a particle fails.
     """
     chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
     change = np.zeros_like(chunk.v)
     shape = extents(space)
     empty(shape, boxes[0])
     empty(shape, boxes[1])
+    sparse = True
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, now, walls, gravity, dt, reports)
-        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports):
+            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
+        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports):
             return
-        if not opening:
-            if wants_change(scheme):
-                clear(force[now], shape, boxes[now].copy())
-            clear(nodes[now], shape, boxes[now])
+        if opening:
+            sparse = thin(shape, boxes[1 - now], blocks[1 - now])
+        else:
+            clean(space, scheme, nodes[now], force[now], boxes[now], blocks[now])
 
 
 @kernel
-def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, now, walls, gravity, dt, reports):
+def clean(space, scheme, nodes, force, box, blocks):
+    """Zero the nodes that were used, for the scatter after next; empty their box and take their marks away."""
+    shape = extents(space)
+    if wants_change(scheme):
+        wipe(force, shape, box, blocks)
+    wipe(nodes, shape, box, blocks)
+    forget(shape, box, blocks)
+    empty(shape, box)
+
+
+@kernel
+def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports):
     """What is done to the nodes of buffer `now` between scatter and gather."""
-    update(space, scheme, nodes[now], force[now], boxes[now], walls, gravity, dt)
-    sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], walls)
+    if not sparse:
+        mark_box(blocks[now], directions(space), extents(space), boxes[now])
+    update(space, scheme, nodes[now], force[now], boxes[now], blocks[now], walls, gravity, dt)
+    sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], blocks[now], walls)
     average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
     compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
 
 
 @kernel
-def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports):
+def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports):
     """Gather from buffer `now` (unless it is the opening of a run), respond, and scatter on to the other (unless it is the last step).
 
     False where a particle fails.
     """
     ok, b = True, 0
     for body in literal_unroll(bodies):  # bodies of several types: Numba unrolls a loop without exits only
-        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, opening, last, reports[b])
+        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports[b])
         b += 1
     return ok
 
 
 @kernel
-def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, now, dt, step, opening, last, report):
+def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
+    reach = reaches(space, x.shape[0] if sparse and not last else 0)
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
         if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
             return False
         if not last:
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK] if sparse else box)
+    touch(space, x, 0, x.shape[0], reach, box, blocks[1 - now])
     return True
 
 
@@ -111,53 +130,54 @@ def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, 
 
 
 @kernel
-def update(space, scheme, nodes, force, box, walls, gravity, dt):
+def update(space, scheme, nodes, force, box, blocks, walls, gravity, dt):
     """Nodes: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold. Where the change is wanted, force becomes v_i+ - v_i."""
     shape = extents(space)
     D = directions(space)
     folded = box.copy()
     if wants_change(scheme):
-        fold(force, D, shape, folded, walls)
-    fold(nodes, D, shape, box, walls)
+        fold(force, D, shape, folded, walls, blocks)
+    fold(nodes, D, shape, box, walls, blocks)
+    words, (begin, end), total = blocks.view(np.uint64), span(shape, box), nodes.shape[0]
     if D > 1 and not wants_change(scheme):
-        to_velocity(nodes, D, shape, box, gravity, dt)
+        to_velocity(nodes, D, blocks, words, begin, end, gravity, dt)
     else:
-        for i in range(box[0, 0], box[0, 1]):
-            for j in range(box[1, 0], box[1, 1]):
-                row = (i * shape[1] + j) * shape[2]
-                for n in range(row + box[2, 0], row + box[2, 1]):
-                    m = nodes[n, D]
-                    inverse = 1.0 / m if m > 0.0 else 0.0
-                    for c in range(D):
-                        push = dt * gravity[c] if m > 0.0 else 0.0
-                        if wants_change(scheme):
-                            nodes[n, c] *= inverse
-                            force[n, c] = force[n, c] * inverse + push
-                        else:
-                            nodes[n, c] = nodes[n, c] * inverse + push
+        at = begin
+        while at < end:
+            first, at = run(blocks, words, at, end)
+            for n in range(BLOCK * first, min(BLOCK * at, total)):
+                m = nodes[n, D]
+                inverse = 1.0 / m if m > 0.0 else 0.0
+                for c in range(D):
+                    push = dt * gravity[c] if m > 0.0 else 0.0
+                    if wants_change(scheme):
+                        nodes[n, c] *= inverse
+                        force[n, c] = force[n, c] * inverse + push
+                    else:
+                        nodes[n, c] = nodes[n, c] * inverse + push
     impose(nodes, D, shape, box, walls)
     if wants_change(scheme):
-        for i in range(box[0, 0], box[0, 1]):
-            for j in range(box[1, 0], box[1, 1]):
-                row = (i * shape[1] + j) * shape[2]
-                for n in range(row + box[2, 0], row + box[2, 1]):
-                    for c in range(D):
-                        before = nodes[n, c]
-                        nodes[n, c] += force[n, c]
-                        force[n, c] = before
+        at = begin
+        while at < end:
+            first, at = run(blocks, words, at, end)
+            for n in range(BLOCK * first, min(BLOCK * at, total)):
+                for c in range(D):
+                    before = nodes[n, c]
+                    nodes[n, c] += force[n, c]
+                    force[n, c] = before
         impose(nodes, D, shape, box, walls)
-        for i in range(box[0, 0], box[0, 1]):
-            for j in range(box[1, 0], box[1, 1]):
-                row = (i * shape[1] + j) * shape[2]
-                for n in range(row + box[2, 0], row + box[2, 1]):
-                    for c in range(D):
-                        force[n, c] = nodes[n, c] - force[n, c]
-        unfold(force, D, shape, box, walls)
-    unfold(nodes, D, shape, box, walls)
+        at = begin
+        while at < end:
+            first, at = run(blocks, words, at, end)
+            for n in range(BLOCK * first, min(BLOCK * at, total)):
+                for c in range(D):
+                    force[n, c] = nodes[n, c] - force[n, c]
+        unfold(force, D, shape, box, walls, blocks)
+    unfold(nodes, D, shape, box, walls, blocks)
 
 
 @kernel(inline=True)
-def to_velocity(nodes, D, shape, box, gravity, dt):
+def to_velocity(nodes, D, blocks, words, begin, end, gravity, dt):
     """[p m] becomes [p/m + dt g, m], a node at once; a node without mass stays nothing."""
     real = nodes.dtype.type
     nought, one = real(0), real(1)
@@ -167,13 +187,13 @@ def to_velocity(nodes, D, shape, box, gravity, dt):
     else:
         moves, keeps = four(one, one, one, nought), four(nought, nought, nought, one)
         push = four(real(dt * gravity[0]), real(dt * gravity[1]), real(dt * gravity[D - 1]), nought)
-    for i in range(box[0, 0], box[0, 1]):
-        for j in range(box[1, 0], box[1, 1]):
-            row = (i * shape[1] + j) * shape[2]
-            for n in range(row + box[2, 0], row + box[2, 1]):
-                m = peek(nodes, 4 * n + D)
-                if m > nought:
-                    store(nodes, 4 * n, fma(load4(nodes, 4 * n), fma(splat4(one / m), moves, keeps), push))
+    at = begin
+    while at < end:
+        first, at = run(blocks, words, at, end)
+        for n in range(BLOCK * first, min(BLOCK * at, nodes.shape[0])):
+            m = peek(nodes, 4 * n + D)
+            if m > nought:
+                store(nodes, 4 * n, fma(load4(nodes, 4 * n), fma(splat4(one / m), moves, keeps), push))
 
 
 @kernel(inline=True)

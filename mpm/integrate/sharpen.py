@@ -20,19 +20,19 @@ FIELDS = 4  # scratch fields of `sharpened`
 
 
 @role
-def sharpen(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+def sharpen(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
     """Between `update` and gather: add q_k to the change of velocity in `force`. `spare` and `field` are the other buffers, zero before and after."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
 
 
 @sharpen.register(Apic)
 @sharpen.register(Flip)
-def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
     return None
 
 
 @sharpen.register(Xpic)
-def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, walls):
+def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
     shape, D = extents(space), directions(space)
     blend_nodes(field, nodes, force, spare, D, shape, box, 0.0, 0.0)
     for _ in range(1, scheme.order):
@@ -41,7 +41,7 @@ def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, w
         divide(spare, D, shape, box)
         impose(spare, D, shape, box, walls)
         blend_nodes(field, nodes, force, spare, D, shape, box, 1.0, 1.0)
-        unfold(field, D, shape, box, walls)
+        unfold(field, D, shape, box, walls, blocks)
         clear(spare, shape, box.copy())
     for i in range(box[0, 0], box[0, 1]):
         for j in range(box[1, 0], box[1, 1]):

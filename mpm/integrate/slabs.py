@@ -18,15 +18,16 @@ from numba import literal_unroll
 
 from mpm.basis import stencil
 from mpm.boundary import extents
-from mpm.boundary.walls import clear, empty
-from mpm.integrate.explicit import on_nodes, step_chunk
+from mpm.boundary.blocks import thin
+from mpm.boundary.walls import empty
+from mpm.integrate.explicit import clean, on_nodes, step_chunk
 from mpm.integrate.locking import any_averages
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL
+from mpm.integrate.touch import SLACK, reaches, touch
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
 from mpm.transfer import CHUNK, deliver, new_chunk, spread, uses_basis_gradient, wants_change
 
-SLACK = 1e-3  # cells: positions are rounded otherwise in lanes
 STILL, LATE = 0, 1
 
 
@@ -40,6 +41,7 @@ class Slabs(NamedTuple):
     late: np.ndarray  # (B, N) whether the chunk that begins at a particle is to be scattered after all slabs
     strays: np.ndarray  # (M,) how many such chunks a slab has
     boxes: np.ndarray  # (M + 1, 3, 2) nodes touched; the last: by late chunks
+    blocks: np.ndarray  # (2, marks) of both buffers (mpm.boundary.blocks)
     reports: np.ndarray  # (M + 1, B, REPORT)
 
 
@@ -52,6 +54,7 @@ class Moment(NamedTuple):
     opening: bool
     last: bool
     late: bool  # only the late chunks
+    sparse: bool  # whether chunks mark what they touch
 
 
 @kernel
@@ -82,6 +85,7 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
     box, report, there, pushed = slabs.boxes[row], slabs.reports[row, b], nodes[1 - moment.now], force[1 - moment.now]
     x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
     starts = moment.opening or moment.late
+    reach = reaches(space, end - begin if moment.sparse and not moment.last else 0)
     for first in range(begin, end, CHUNK):
         if moment.late and late[first] == STILL:
             continue
@@ -93,11 +97,12 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
             continue
         if moment.late or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
             late[first] = STILL
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, box)
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK] if moment.sparse else box)
         else:
             deliver(body.particles, first, chunk, count)
             late[first] = LATE
             slabs.strays[s] += 1
+    touch(space, x, begin, end, reach, box, slabs.blocks[1 - moment.now])
 
 
 @kernel
@@ -115,40 +120,33 @@ def within(space, chunk, axis, count, low, high):
 
 
 @kernel
-def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, now, walls, gravity, dt, reports):
+def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports):
     """What is done to the nodes between scatter and gather."""
     chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, now, walls, gravity, dt, reports)
+    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
 
 
-@kernel
-def clean(space, scheme, nodes, force, box):
-    """Zero the nodes that were used, for the scatter after next."""
-    if wants_change(scheme):
-        clear(force, extents(space), box.copy())
-    clear(nodes, extents(space), box)
-
-
-def advance_slabs(scene, nodes, force, boxes, dt, steps, reports) -> bool:
+def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
     space, bodies, starts, axis = scene.space, scene.bodies, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
     largest = max(len(body.particles.m) for body in bodies)
     slabs = Slabs(
         axis, starts, np.zeros(M, np.int64), np.zeros(M, np.int64), np.zeros((len(bodies), largest), np.uint8), np.zeros(M, np.int64),
-        np.zeros((M + 1, 3, 2), np.int64), np.repeat(reports[None], M + 1, axis=0),
+        np.zeros((M + 1, 3, 2), np.int64), blocks, np.repeat(reports[None], M + 1, axis=0),
     )  # fmt: skip
     reach = scene.order.reach
-    order, strayed = wave(M), False
+    order, strayed, sparse = wave(M), False, True
     for box in boxes:
         empty(extents(space), box)
     with Crew(min(scene.threads, M)) as crew:
         for step in range(-1, steps):
             opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
             if not opening:
-                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, now, scene.walls, scene.gravity, dt, slabs.reports[M])
+                around = scene.walls, scene.gravity
+                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, dt, slabs.reports[M])
             share_out(reach, slabs)
-            moment = Moment(now, dt, step, opening, last, False)
+            moment = Moment(now, dt, step, opening, last, False, sparse)
             crew.work(order, lambda which, m=moment: pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, which, nodes, force, m))
             empty(extents(space), slabs.boxes[M])
             if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():
@@ -157,11 +155,13 @@ def advance_slabs(scene, nodes, force, boxes, dt, steps, reports) -> bool:
             if (slabs.reports[..., CODE] != 0).any():
                 break
             if not opening:
-                clean(space, scene.scheme, nodes[now], force[now], boxes[now])
+                clean(space, scene.scheme, nodes[now], force[now], boxes[now], blocks[now])
             if not last:
                 boxes[1 - now, :, 0], boxes[1 - now, :, 1] = slabs.boxes[:, :, 0].min(axis=0), slabs.boxes[:, :, 1].max(axis=0)
                 used = slabs.boxes[:M, axis]
                 reach[used[:, 1] > used[:, 0]] = used[used[:, 1] > used[:, 0]]
+            if opening:
+                sparse = bool(thin(extents(space), boxes[1 - now], blocks[1 - now]))
     for b, report in enumerate(reports):
         together(report, slabs.reports[:, b])
     return strayed

@@ -37,7 +37,7 @@ class Chunk(NamedTuple):
     e: np.ndarray  # (12, n) trial strain tensor, and what the response of a particle needs beside it; rows of integrate/strain.py and react.py
     place: np.ndarray  # (D, n) positions
     s: np.ndarray  # (D, ROWS, n) quadratic stencils (stencils.py)
-    reach: np.ndarray  # (D, 2) nodes that a gather touches
+    reach: np.ndarray  # (3, 2) nodes that a gather or a scatter touches
     none: np.ndarray  # (n,) zeros: the mass of an impulse
     packed: np.ndarray  # (n, 4 D + 4), or (n, 8 D + 4) with the basis gradient: what rows.py packs, a particle a row
 
@@ -147,7 +147,7 @@ def new_chunk(D, like, own_gradient, own_velocity):
     if own_velocity:
         u, at = pool[at : at + vector].reshape(D, n), at + vector + step
         U = pool[at : at + tensor].reshape(D, D, n)
-    return Chunk(m, a, A, T, v, C, L, u, U, f, S, work, place, stencils, np.zeros((D, 2), np.int64), none, packed)
+    return Chunk(m, a, A, T, v, C, L, u, U, f, S, work, place, stencils, np.zeros((3, 2), np.int64), none, packed)
 
 
 @kernel(inline=True)
