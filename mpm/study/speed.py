@@ -146,6 +146,12 @@ def whole_step() -> str:
     return "3-D thermo-viscoplastic step (Hencky, radial return, heat), a particle: " + "; ".join(said)
 
 
+def empty_boxes() -> str:
+    """What the empty box around two bodies costs."""
+    found = model("apart")
+    return f"two cubes of 12 cells in opposite corners of 128³, float64: {found['apart_ns']:.0f} ns a particle-step, side by side {found['together_ns']:.0f}"
+
+
 def smaller_models() -> str:
     """Heat of bodies that do not move, and material points."""
     baked, points = model("loaf"), model("points")
@@ -175,6 +181,7 @@ def fitted(peers: Path | None, python: str | None) -> str:
 
 FIGURES = {
     "random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown, "whole step": whole_step,
+    "empty box": empty_boxes,
     "smaller models": smaller_models,
 }  # fmt: skip
 

@@ -3,6 +3,7 @@
 whole [f32]   ns a particle-step of a sheared cube that flows everywhere (Hencky, radial return, heat through its faces), with physics taken away in turn
 disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the answer, geometry and assembly included
 loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 780 s of baking with its latent front
+apart         ns a particle-step of two cubes in opposite corners of a grid of 128^3, and side by side
 points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
 Run them pinned to one core of an idle machine.
 """
@@ -125,6 +126,25 @@ def loaf() -> dict:
     return {"seconds": statistics.median(seconds[1:]), "first": seconds[0]}
 
 
+def apart() -> dict:
+    """Medians of rounds in turn, float64, 31 000 particles."""
+    from mpm.study.phases import Bench
+
+    made, size = {}, 12 / 128
+    for name, lower in (("apart_ns", [0.85] * 3), ("together_ns", [0.05 + 1.5 * size, 0.05, 0.05])):
+        boxes = {"one": [0.05] * 3, "other": lower}
+        bodies = {key: {"shape": {"box": {"lower": a, "upper": [b + size for b in a]}}, "material": "solid"} for key, a in boxes.items()}
+        made[name] = Bench(load({
+            "title": "Two cubes", "grid": {"dimension": 3, "size": [1, 1, 1], "cell": 1 / 128}, "bodies": bodies, "time": {"end": 1},
+            "materials": {"solid": {"density": 1000, "elastic": {"neo_hookean": {"E": 1e5, "nu": 0.3}}}}, "method": {"precision": "float64"},
+        }))  # fmt: skip
+    times: dict[str, list[float]] = {name: [] for name in made}
+    for _ in range(ROUNDS):
+        for name, bench in made.items():
+            times[name].append(bench.step_ns())
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
 def points() -> dict:
     """A batch of relaxations that flow at every step."""
     data = {
@@ -140,4 +160,4 @@ def points() -> dict:
 
 if __name__ == "__main__":
     what, *more = sys.argv[1:]
-    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "points": points}[what](*more)))
+    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "points": points}[what](*more)))
