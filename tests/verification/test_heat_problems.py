@@ -35,7 +35,7 @@ MOVING = {"E": 1.0, "nu": 0.0}  # a bar of particles at rest
 def test_t3_with_ten_cells_of_particles(core):
     """Steps of order 2 at the automatic pace. The bar is off by 1.4 K rms then, of 100; the order is that of the cell.
 
-    36.52 is where two errors meet, for heat goes 1.7 cells deep in a period: lumped mass at the free end alone gives 35.9 (affine FLIP, steps of 0.05 s, rms 1.9),
+    36.52 is where two errors meet, as heat goes 1.7 cells deep in a period: lumped mass at the free end gives 35.9 (affine FLIP, steps of 0.05 s, rms 1.9),
     and APIC's damping, by the step, adds to it (37.9 in steps of 0.5 s). On the nodes, with consistent mass, ten cells are off by 0.06.
     """
     changes = {"materials.steel.elastic": {"hencky": MOVING}, "method.heat": {"implicit": {"order": 2}}}
