@@ -112,7 +112,7 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
     failures = [{"run_id": line["run_id"], "status": STATUS[line["status"]], "error": line["error"]} for line in bad]
     return {
         "out": result.out,
-        "dataset": result.out / "sweep.nc",
+        "dataset": result.out / "sweep.nc" if (result.out / "sweep.nc").exists() else None,
         "picture": picture,
         "points": sum(result.counts.values()),
         "counts": result.counts,
@@ -127,7 +127,9 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
 def words(result: Any, picture: Any, config: Any) -> list[str]:
     """The same for people."""
     told = [", ".join(f"{count} {name}" for name, count in result.counts.items() if count) + f"; {result.ran} run now, {result.seconds:.1f} s"]
-    told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None]
+    told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None and path.exists()]
+    if result.hurried and not result.collected and result.ran:
+        told.append(f"there was no time to collect what ran: `mpm collect {result.out}` does, and so does the next sweep")
     if result.counts["pending"]:
         told.append(f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left: the same command goes on (mpm sweep {config})")
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))

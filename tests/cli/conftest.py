@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from mpm.sweep import engine
+
 FAKES = str(Path(__file__).parents[1] / "fakes")
 if FAKES not in sys.path:
     sys.path.insert(0, FAKES)
@@ -43,7 +45,7 @@ def mpm(tmp_path, monkeypatch, capsys):
     plots.overview = lambda tree, path: path.write_bytes(b"p")
     plots.figures = lambda out, names, path, svg: [Path(path or out / f"{name}.{'svg' if svg else 'png'}") for name in names or ["overview"]]
     monkeypatch.setitem(sys.modules, "mpm.plots", plots)
-    monkeypatch.setattr("mpm.sweep.engine.RUNNER", "fake_runner")
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "120")
 
