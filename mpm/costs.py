@@ -1,11 +1,23 @@
-"""What a point will cost, without running it: size, limits and which binds, seconds, bytes. Rough: within a factor of two or three."""
+"""What a point will cost, without running it: size, limits and which binds, seconds, bytes.
+
+Seconds of bodies that move   set-up, and what each step, block of steps, heat step and output takes, alone and a particle (`moving`)
+        of rigid ones         what factorisations, solutions and evaluations take (mpm.rigid.outlook), the interpreter's part of a run and an output each
+Within a factor of two of the runs of `python -m mpm.study.costs`.
+Fails when: a scene stiffens or speeds up, so that its steps are not those of its start; threads share it.
+"""
 
 import math
 
 from mpm.scene.inventory import output_bytes, physics
 
-NS_PARTICLE_STEP = {1: 60, 2: 120, "axisymmetric": 130, 3: 220}  # with flow and heat; `mpm bench CONFIG` measures
-LEAST = {"rigid": 1e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included: the left ends of docs/chart_robin_slab.png, chart_hencky_bar.png
+# Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
+LEAST = {"rigid": 1e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
+STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
+WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
+ALONE = {"step": 3e-6, "block": 60e-6, "heat": 100e-6, "output": 300e-6}  # s, whatever the number of particles
+HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
+RIGID = {"LinearSteps": 0.4e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
+SHOWN = 40e-6  # s an output of rigid bodies
 BYTES_PARTICLE = {1: 200, 2: 350, "axisymmetric": 390, 3: 754}  # at the peak, which is where particles are cut and weighed
 BYTES_NODE = 30
 BYTES_LATER = 153_000_000  # of a moving process once its kernels are loaded, when particles take the most
@@ -74,6 +86,24 @@ def count_particles(experiment) -> int:
     return round(count)
 
 
+def outputs(experiment) -> int:
+    """How often a point is recorded, its start included."""
+    return math.ceil(experiment.time.end / experiment.output.every * (1 - 1e-9)) + 1
+
+
+def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
+    """Seconds of a run of moving bodies; of materials of several kinds the dearest."""
+    from mpm.simulation import BLOCK
+
+    parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
+    each = STEP[experiment.grid.dimension]
+    each += WARM if any(part.heat is not None and (part.expansion is not None or part.heating is not None) for part in parts) else 0.0
+    each += max((FLOW[part.flow.map] for part in parts if part.flow is not None), default=0.0)
+    intervals = max(heat_steps, outputs(experiment) - 1)  # each is cut into blocks of its own
+    alone = steps * ALONE["step"] + (intervals + steps // BLOCK) * ALONE["block"] + heat_steps * ALONE["heat"] + outputs(experiment) * ALONE["output"]
+    return LEAST["moving"] + alone + particles * (steps * each + heat_steps * HEAT[experiment.grid.dimension] + outputs(experiment) * OUTPUT)
+
+
 def estimate_moving(experiment) -> dict:
     """Particles are sampled (not run) for the counts and the limits of the first step."""
     from mpm.boundary import extents
@@ -89,12 +119,13 @@ def estimate_moving(experiment) -> dict:
     pace = min((scene.heat_step or now.pace) * S, experiment.time.end)
     binds = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
     steps = math.ceil(experiment.time.end / min(step, pace))
-    dimension = experiment.grid.dimension
+    intervals = outputs(experiment) - 1
+    heat_steps = intervals * math.ceil(experiment.time.end / intervals / pace * (1 - 1e-9)) if now.heat else 0
     return {
         "particles": particles,
         "unknowns": math.prod(extents(scene.space)),
         "steps": steps,
-        "seconds": LEAST["moving"] + steps * particles * NS_PARTICLE_STEP[dimension] * 1e-9,
+        "seconds": moving(experiment, particles, steps, heat_steps),
         "memory_bytes": memory(experiment),
         "output_bytes": output_bytes(experiment, particles),
         "limits": {name: limit * S for name, limit in (now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {})).items()},
@@ -121,7 +152,7 @@ def estimate_rigid(experiment) -> dict:
         "particles": 0,
         "unknowns": ahead["unknowns"],
         "steps": STEPS_RIGID,
-        "seconds": LEAST["rigid"] + ahead["seconds"],
+        "seconds": LEAST["rigid"] + ahead["seconds"] + sum(RIGID[name] for name in ahead["methods"]) + outputs(experiment) * SHOWN,
         "memory_bytes": BYTES_PROCESS["rigid"] + ahead["memory_bytes"],
         "output_bytes": output_bytes(experiment, 0),
         "limits": ahead["limits"],

@@ -1,0 +1,26 @@
+"""What `mpm plan` says a point costs: more for more, and what it costs within a factor of two."""
+
+import pytest
+
+import mpm
+from mpm.costs import estimate
+from mpm.study.costs import CONFIGS, SCENES, measure
+
+
+def seconds(name, changes):
+    return estimate(mpm.load(CONFIGS / f"{name}.yaml", changes))["seconds"]
+
+
+def test_more_costs_more():
+    coarse, fine, finer = (seconds("verification/hencky_bar", {"grid.cell": 2.0**-n}) for n in (4, 8, 9))
+    assert 1 < fine / coarse and 2.5 < finer / fine < 4  # four times the work where a run is more than what happens once, and once an output
+    assert seconds("verification/hencky_bar", {"output.every": 0.01}) > seconds("verification/hencky_bar", {})
+    assert seconds("scenes/slump", {"materials.dough.flow.ellipse.map": "clipped"}) > seconds("scenes/slump", {})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "changes"), SCENES)
+def test_within_a_factor_of_two(name, changes):
+    """By processor time, which a busy machine stretches by a third or so."""
+    line = measure(name, changes)
+    assert 0.5 <= line.ratio <= 2.0, line.text()
