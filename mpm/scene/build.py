@@ -21,24 +21,8 @@ from mpm.scene.seams import refuse_idle, surface_and_seams
 from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
-    PAD,
-    Average,
-    Axisymmetric,
-    Body,
-    Expansion,
-    GridHeating,
-    Heating,
-    Isothermal,
-    Latched,
-    Line,
-    NoExchange,
-    NoExpansion,
-    NoHeating,
-    Particles,
-    Plane,
-    Softening,
-    Thermal,
-    Volume,
+    PAD, Average, Axisymmetric, Body, Expansion, GridHeating, Heating, Isothermal, Latched, Line,
+    NoExchange, NoExpansion, NoHeating, Particles, Plane, Softening, Thermal, Volume,
 )  # fmt: skip
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
 
