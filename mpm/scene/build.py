@@ -12,8 +12,9 @@ import numpy as np
 from mpm.basis import BASES
 from mpm.boundary import KINDS, extents
 from mpm.error import Motion
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NeoHookean, NoFlow, Porous, table
+from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
 from mpm.observe import Watch
+from mpm.scene.law import law
 from mpm.scene.load import loaded
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
@@ -21,28 +22,30 @@ from mpm.scene.seams import refuse_idle, surface_and_seams
 from mpm.scene.shapes import cells, shape
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
-    PAD, Average, Axisymmetric, Body, Expansion, GridHeating, Heating, Isothermal, Latched, Line,
-    NoExchange, NoExpansion, NoHeating, Particles, Plane, Softening, Thermal, Volume,
+    PAD,
+    Average,
+    Axisymmetric,
+    Body,
+    Expansion,
+    GridHeating,
+    Heating,
+    Isothermal,
+    Latched,
+    Line,
+    NoExchange,
+    NoExpansion,
+    NoHeating,
+    Particles,
+    Plane,
+    Softening,
+    Thermal,
+    Volume,
 )  # fmt: skip
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
 
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
          3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
 STRAINS = {1: 3, 2: 4, 3: 6}
-
-
-def law(model):
-    """The run-time law of a config's law."""
-    kind = type(model).kind
-    if kind == "constant":
-        return Constant(float(model.value))
-    if kind == "table":
-        return table(model.temperature, model.value, model.interpolation)
-    if kind == "bump":
-        return Bump(model.base, model.heat, model.at, model.width)
-    if kind == "porosity":
-        return Porous(1.0 - model.initial, model.exponent)
-    return Logistic(model.low, model.high, model.at, model.width)
 
 
 def output_times(experiment) -> np.ndarray:

@@ -4,8 +4,9 @@ import time
 
 import numpy as np
 
-from mpm.scene.build import SceneError, law, output_times, watch
+from mpm.scene.build import SceneError, output_times, watch
 from mpm.scene.exchange import programme, robin
+from mpm.scene.law import law
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 
