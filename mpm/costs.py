@@ -18,9 +18,9 @@ ALONE = {"step": 3e-6, "block": 60e-6, "heat": 100e-6, "output": 300e-6}  # s, w
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
 RIGID = {"LinearSteps": 0.4e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
 SHOWN = 40e-6  # s an output of rigid bodies
-BYTES_PARTICLE = {1: 200, 2: 498, "axisymmetric": 496, 3: 754}  # at the peak, which is where particles are cut and weighed
+BYTES_PARTICLE = {1: 200, 2: 376, "axisymmetric": 390, 3: 754}  # at the peak, which is where particles are cut and weighed
 BYTES_NODE = 30
-BYTES_LATER = 153_000_000  # of a moving process once its kernels are loaded, when particles take the most
+BYTES_LATER = 203_000_000  # of a moving process once its kernels are loaded, when particles take the most
 BYTES_PROCESS = {"point": 195_000_000, "moving": 205_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
 
 
