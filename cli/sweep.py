@@ -131,7 +131,8 @@ def words(result: Any, picture: Any, config: Any) -> list[str]:
     if result.hurried and not result.collected and result.ran:
         told.append(f"there was no time to collect what ran: `mpm collect {result.out}` does, and so does the next sweep")
     if result.counts["pending"]:
-        told.append(f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left: the same command goes on (mpm sweep {config})")
+        left = f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left"
+        told.append(f"{left}: the same command goes on (mpm sweep {config} -o {result.out})")
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
     if bad:
         told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
