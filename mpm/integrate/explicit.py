@@ -94,14 +94,14 @@ def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes
 def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
-    reach = reaches(space, x.shape[0] if sparse and not last else 0)
+    reach = reaches(space, 0 if last else x.shape[0])
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
         if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
             return False
         if not last:
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK] if sparse else box)
-    touch(space, x, 0, x.shape[0], reach, box, blocks[1 - now])
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK])
+    touch(space, x, 0, x.shape[0], reach, box, blocks[1 - now], sparse)
     return True
 
 

@@ -85,7 +85,7 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
     box, report, there, pushed = slabs.boxes[row], slabs.reports[row, b], nodes[1 - moment.now], force[1 - moment.now]
     x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
     starts = moment.opening or moment.late
-    reach = reaches(space, end - begin if moment.sparse and not moment.last else 0)
+    reach = reaches(space, 0 if moment.last else end - begin)
     for first in range(begin, end, CHUNK):
         if moment.late and late[first] == STILL:
             continue
@@ -97,12 +97,12 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
             continue
         if moment.late or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
             late[first] = STILL
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK] if moment.sparse else box)
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK])
         else:
             deliver(body.particles, first, chunk, count)
             late[first] = LATE
             slabs.strays[s] += 1
-    touch(space, x, begin, end, reach, box, slabs.blocks[1 - moment.now])
+    touch(space, x, begin, end, reach, box, slabs.blocks[1 - moment.now], moment.sparse)
 
 
 @kernel

@@ -23,10 +23,11 @@ def reaches(space, count):
 
 
 @kernel
-def touch(space, x, begin, end, reach, box, blocks):
-    """Grow `box` (3, 2) by what the chunks of the particles from `begin` to `end` reached, and mark it.
+def touch(space, x, begin, end, reach, box, blocks, sparse):
+    """Grow `box` (3, 2) by what the chunks of the particles from `begin` to `end` reached, and where the scene is `sparse` mark it.
 
     The box of a chunk where that is small; where it is not, because particles are out of order or a plane of cells ends in the chunk, particle by particle.
+    Every chunk has a box, sparse or not: to choose one for each scatter cost 3 to 5 % of a step (`mpm bench --n 64 --np 100000 --dtype f64`).
     """
     shape, D, inverse, one = extents(space), directions(space), 1.0 / space.h, np.empty((3, 2), np.int64)
     for k in range(reach.shape[0]):
@@ -34,6 +35,8 @@ def touch(space, x, begin, end, reach, box, blocks):
             continue  # not scattered
         for a in range(3):
             box[a, 0], box[a, 1] = min(box[a, 0], reach[k, a, 0]), max(box[a, 1], reach[k, a, 1])
+        if not sparse:
+            continue
         first = begin + k * CHUNK
         count = min(CHUNK, end - first)
         if marks_of(D, shape, reach[k]) <= MANY * count:

@@ -32,7 +32,7 @@ def marked(space, x, box, blocks):
         for a in range(directions(space)):
             first = np.floor(x[k * CHUNK : (k + 1) * CHUNK, a] / space.h + 0.5).astype(int) + 1
             reach[k, a] = first.min(), first.max() + 3
-    touch(space, x, 0, len(x), reach, box, blocks)
+    touch(space, x, 0, len(x), reach, box, blocks, True)
 
 
 @pytest.mark.parametrize("D", SPACES)
