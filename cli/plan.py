@@ -1,8 +1,10 @@
 """mpm plan: what a sweep would do. Runs nothing, writes nothing."""
 
+import sys
+
 from mpm_cli.options import Config, Jobs, Json, MaxRuns, Out, Set, Smoke, Tolerance, load
 from mpm_cli.sweep import Rerun
-from mpm_cli.talk import document, say
+from mpm_cli.talk import document, say, warn
 
 
 def plan(
@@ -25,11 +27,17 @@ def plan(
     from mpm.sweep.outlook import outlook, said
 
     experiment = load(config, set_, smoke)
-    found = outlook(experiment, out, jobs, rerun, max_runs, tol)
+    found = outlook(experiment, out, jobs, rerun, max_runs, tol, hear)
     words = said(found)
     if tol is not None:
         from mpm.study.choose import offer, told
 
-        found["settings"] = offer(experiment, tol)
+        found["settings"] = offer(experiment, tol, hear)
         words += "\n" + told(found["settings"])
     document(found) if as_json else say(words)
+
+
+def hear(text: str) -> None:
+    """A pilot as it begins or ends: on stderr, at once."""
+    warn(text)
+    sys.stderr.flush()

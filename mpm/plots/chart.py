@@ -63,16 +63,19 @@ def draw(ax: Any, data: Any) -> None:
     more = [Line2D([], [], color=QUIET, ls=DASHES[k % len(DASHES)], lw=1.4, label=name) for k, name in enumerate(paths) if name]
     more = [heading("refined along"), *more] if len(more) > 1 else []
     rivals = rival(ax, data)
-    front(ax, data, error, least)
+    circled = front(ax, data, error, least)
     signs = [Line2D([], [], color=INK, lw=3.2, alpha=0.85, label="Pareto front")]
+    if circled:
+        said = "cheapest within " + ", ".join(f"{100 * tolerance:g}" for tolerance in circled) + " %"
+        signs.append(Line2D([], [], marker="o", ls="None", ms=11, mfc="none", mec=INK, mew=1.3, label=said))
     if shown:
         signs.append(Line2D([], [], color=QUIET, lw=1, alpha=0.45, label="with import and compilation"))
     finish(ax, data, error, least)
     legend_below(ax, [row for row in ([heading("method"), *handles], rivals, more + signs, *([one] for one in failures(ax, data, looks))) if row])
 
 
-def front(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
-    """The front as a thick line, and circles at the cheapest settings."""
+def front(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> list[float]:
+    """The front as a thick line, and circles at the cheapest settings; the tolerances that have one."""
     rows = np.flatnonzero(data["front"].values.astype(bool) & (error > 0))
     rows = rows[np.argsort(least[rows])]
     ax.plot(least[rows], error[rows], color=INK, lw=3.2, alpha=0.85, zorder=2, solid_joinstyle="round")
@@ -80,6 +83,7 @@ def front(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
         fit = rows[error[rows] <= tolerance]
         if len(fit):
             ax.plot(least[fit[0]], error[fit[0]], "o", ms=13, mfc="none", mec=INK, mew=1.3, zorder=5)
+    return [tolerance for tolerance in TOLERANCES if (error[rows] <= tolerance).any()]
 
 
 def rival(ax: Any, data: Any) -> list[Any]:
@@ -134,18 +138,35 @@ def seconds(value: float, _: Any) -> str:
 
 
 def guides(ax: Any) -> None:
-    """Slopes -1 and -2 in a corner; none where the times lie so close together that every slope is a wall."""
+    """Slopes -1 and -2 in the emptiest corner; none where the times lie so close together that every slope is a wall."""
     (left, right), (low, high) = np.log10(ax.get_xlim()), np.log10(ax.get_ylim())
-    x = left + 0.02 * (right - left)
     width = max(0.05 * (right - left), 0.03 * (high - low))  # so that the two numbers stand apart
     if width > 0.2 * (right - left):
         return
-    top = high - (STRIP + 0.03) * (high - low)
+    margin, room = 0.02 * (right - left), width + 0.03 * (right - left)  # with the numbers beside
+    starts = [left + margin, right - margin - room]
+    tops = [high - (STRIP + 0.03) * (high - low), low + 0.04 * (high - low) + 2 * width]
+    x, y = drawn(ax)
+    corners = [(start, top) for top in tops for start in starts]
+    x, top = min(corners, key=lambda at: np.sum((x > at[0] - margin) & (x < at[0] + room) & (y < at[1] + margin) & (y > at[1] - 2.3 * width)))
     for slope in (1, 2):
         ax.plot(10 ** np.array([x, x + width]), 10 ** np.array([top, top - slope * width]), color=QUIET, lw=1, zorder=1)
         ax.text(10 ** (x + width), 10 ** (top - slope * width), f" -{slope}", color=QUIET, fontsize=8, va="center")
     ax.set_xlim(10**left, 10**right)
     ax.set_ylim(10**low, 10**high)
+
+
+def drawn(ax: Any) -> np.ndarray:
+    """Places (2, N) along all lines of a panel, in decades."""
+    found = [np.zeros((2, 0))]
+    for line in ax.lines:
+        x, y = (np.asarray(values, float) for values in line.get_data())
+        good = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
+        x, y = np.log10(x[good]), np.log10(y[good])
+        if line.get_transform() == ax.transData and len(x):
+            dense = np.linspace(0, len(x) - 1, 20 * len(x))
+            found.append(np.array([np.interp(dense, np.arange(len(x)), values) for values in (x, y)]))
+    return np.concatenate(found, axis=1)
 
 
 def failures(ax: Any, data: Any, looks: dict) -> list[Any]:

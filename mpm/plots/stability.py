@@ -98,18 +98,22 @@ class Figure:
         marks += [Line2D([], [], ls="None", marker=MARKS[k % len(MARKS)], color=BEYOND, label=cause.replace("_", " ")) for k, cause in enumerate(self.causes)]
         lines = []
         if "expected" in self.root:
-            lines = [Line2D([], [], label=str(label), **look) for label, look in zip(self.root.line_label.values, self.looks(), strict=True)]
+            named = dict(zip(map(str, self.root.line_label.values), self.looks(), strict=True))  # lines of one name are one entry
+            lines = [Line2D([], [], label=label, **look) for label, look in named.items()]
         entries = [*marks, *lines]
         longest = max(len(entry.get_label()) for entry in entries)
         fig.legend(handles=entries, loc="outside lower left", ncols=min(len(entries), max(2, 150 // (longest + 9))), handlelength=2.6)
 
     def looks(self) -> list[dict[str, Any]]:
-        """Colour and dashes of every line of theory: what is safe in one look, what is expected in others."""
-        found, count = [], 0
-        for role in self.root.line_role.values:
-            found.append({"color": SAFE, "ls": DASHES[1]} if role == "safe" else {"color": LINES[count % len(LINES)], "ls": DASHES[2 + count % 3]})
-            count += role != "safe"
-        return found
+        """Colour and dashes of every line of theory, one look a name: what is safe in one colour, what is expected in others."""
+        found: dict[str, dict[str, Any]] = {}
+        count = {"safe": 0, "expected": 0}
+        for label, role in zip(self.root.line_label.values, self.root.line_role.values, strict=True):
+            if label not in found:
+                place, colour = count[role], SAFE if role == "safe" else LINES[count[role] % len(LINES)]
+                found[label] = {"color": colour, "ls": DASHES[1 + place % 2] if role == "safe" else DASHES[2 + place % 3]}
+                count[role] += 1
+        return [found[label] for label in self.root.line_label.values]
 
 
 def positive(values: np.ndarray) -> bool:

@@ -40,7 +40,8 @@ def promise(name: str, experiment: Any, tolerance: float, against: list[dict]) -
     """Choose, run, compare. `against`: {label, error, seconds, experiment} of the chart's settings with the same model."""
     from mpm.config import load
     from mpm.runner import run_point
-    from mpm.study.choose import Gauge, choose
+    from mpm.study.choose import choose
+    from mpm.study.pilots import Gauge
     from mpm.study.timing import LEAST, clock
 
     began = time.process_time()

@@ -1,6 +1,7 @@
 """Outlook: what a sweep would do (`mpm plan`): points, what is there already, physics, limits, cost, smaller models. Writes nothing; runs pilots if asked."""
 
 import importlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,16 @@ from mpm.sweep.tally import Points, missing
 
 
 def outlook(
-    experiment: Any, out: Path | None, jobs: int, rerun: str | None = None, max_runs: int = 10_000, tolerance: float | None = None
+    experiment: Any,
+    out: Path | None,
+    jobs: int,
+    rerun: str | None = None,
+    max_runs: int = 10_000,
+    tolerance: float | None = None,
+    heard: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Points and dimensions of the sweep, which are there; of the first that would run `estimate`, groups and smaller models, with pilots at a tolerance."""
+    """Points and dimensions of the sweep, which are there; of the first that would run `estimate`, groups and smaller models, with pilots at a tolerance.
+    `heard` is told of each pilot as it begins."""
     from mpm.scene.groups import groups
     from mpm.sweep.cases import plan as plan_of
 
@@ -37,7 +45,7 @@ def outlook(
         "dimensions": [dimension(dim) for dim in plan.dims],
         "estimate": cost,
         "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
-        "smaller": smaller(first.experiment, tolerance) if first else None,
+        "smaller": smaller(first.experiment, tolerance, heard) if first else None,
         "jobs": jobs,
         "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
         "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
@@ -45,11 +53,25 @@ def outlook(
     }
 
 
-def smaller(experiment: Any, tolerance: float | None) -> dict[str, Any]:
+def smaller(experiment: Any, tolerance: float | None, heard: Callable[[str], None]) -> dict[str, Any]:
     """Smaller models of one point; with a tolerance pilots are run."""
     from mpm.reduce.listing import listing
 
-    return listing(experiment, tolerance, importlib.import_module(engine.RUNNER).run_named if tolerance is not None else None)
+    runner = importlib.import_module(engine.RUNNER)
+
+    def run(one: Any) -> Any:
+        grid, seconds = one.grid, runner.estimate(one).get("seconds", 0.0)
+        moves = "moving" if one.moving else "at rest"
+        where = "one temperature" if grid.dimension == 0 else f"{said_dimension(grid.dimension)}, cells of {grid.cell:.3g} m, {moves}"
+        heard(f"smaller models, pilot: {where}, {seconds:.2g} s once compiled")
+        return runner.run_named(one)
+
+    return listing(experiment, tolerance, run if tolerance is not None else None)
+
+
+def said_dimension(dimension: int | str) -> str:
+    """`2-D`, `axisymmetric`."""
+    return dimension if isinstance(dimension, str) else f"{dimension}-D"
 
 
 def dimension(dim: Any) -> dict[str, Any]:

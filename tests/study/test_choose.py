@@ -5,8 +5,9 @@ import math
 import pytest
 
 import mpm
-from mpm.study.choose import NoChoice, choose, grids, numerical, physics, rank, reach, refine
+from mpm.study.choose import choose, numerical, physics, rank, reach
 from mpm.study.figures import STUDIES
+from mpm.study.pilots import NoChoice, grids, refine
 from mpm.study.promises import PROBLEMS, rivals
 
 SLAB = {

@@ -1,0 +1,228 @@
+"""Pilots: a user's own scene with ever more cells, until one keeps a tolerance or says which cell would (study/choose.py, `mpm plan --tol`).
+
+    refine(experiment, settings, tolerance, told) -> (cell, predicted error, seconds, pilots)      or NoChoice, which says why
+
+Each has PILOT times the cells of the last, until one keeps the tolerance, or until the error is within REACH of it, falls with an order p of ORDERS[0] or
+more, and the cell which that asks for, n* = n (e/(MARGIN tol))^(1/p), is farther than the next two pilots.
+No pilot starts that would end, by the time of the last one, more than MOST_SECONDS after the first began.
+Error     as `mpm chart` has it: against `exact:`; without one, the change of the observables that the config lists (probes, time_to, ...) between pilots
+Cost      the last pilot's time, times the ratio that `mpm.runner.estimate` gives between the two
+Fails when: the scene has an error that no cell removes (a smooth approximation, a sharp latent front); the pilots then do not fall, and the choice says so.
+"""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mpm.config.vary import label
+
+MARGIN, REACH, PILOT = 0.7, 6.0, 1.5
+MOST_PILOTS, MOST_SECONDS = 10, 120.0
+LONG = 1.0  # s of a pilot that is timed by the run which gives its error: shorter ones once more, warm
+ORDERS = (0.7, 4.0)
+
+
+class NoChoice(ValueError):
+    """No method or cell can be chosen; the text says why."""
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """A run on the way: cells over the smallest extent, cell [m], error (inf: none), seconds of processor time, why it ended early."""
+
+    cells: float
+    cell: float
+    error: float
+    seconds: float
+    ended: str = ""
+
+    def said(self, first: bool) -> str:
+        """In words."""
+        if self.ended:
+            return self.ended
+        error = f"error {100 * self.error:.2g} %" if math.isfinite(self.error) else "to compare the next with" if first else "no error"
+        return f"{error}, {self.seconds:.2g} s"
+
+
+def silent(_: str) -> None:
+    """Says nothing."""
+
+
+def extent(experiment: Any) -> float:
+    """The smallest extent of a body [m]."""
+    from mpm.scene.shapes import shape
+
+    bounds = [shape(body.shape, experiment.grid.dimension).bounds() for body in experiment.bodies.values()]
+    return min(float(np.min(upper - lower)) for lower, upper in bounds)
+
+
+def grids(experiment: Any) -> Iterator[float]:
+    """Cells [m] from coarse to fine that the scene can have: walls of moving bodies stand on grid lines, so sizes are whole numbers of cells."""
+    L, size = extent(experiment), experiment.grid.size
+    if not experiment.moving:
+        yield from (L / n for n in range(2, 4000))
+        return
+    first = size[0]
+    for n in range(1, 20000):
+        h = first / n
+        if h <= L / 2 and all(abs(length / h - round(length / h)) < 1e-6 for length in size):
+            yield h
+
+
+def refine(experiment: Any, settings: dict[str, Any], tolerance: float, told: Callable[[str], None] = silent) -> tuple[float, float, float, list[Pilot]]:
+    """(cell, predicted error, seconds, pilots) of one method."""
+    L, available = extent(experiment), list(grids(experiment))
+    pilots: list[Pilot] = []
+    gauge, wanted = Gauge(experiment, settings), 3.0 if experiment.moving else 2.0
+    began, stopped = time.process_time(), ""
+    while len(pilots) < MOST_PILOTS:
+        cell = next((h for h in available if h <= L / wanted * (1 + 1e-9)), None)
+        if cell is None or (pilots and cell >= pilots[-1].cell):
+            break
+        expected = gauge.expected(cell, pilots)
+        if time.process_time() - began + (expected or 0.0) > MOST_SECONDS:
+            stopped = f", and the next, of cells of {label(cell)} m, would take {expected:.2g} s where {MOST_SECONDS:g} s are left to all"
+            break
+        told(f"pilot of cells of {label(cell)} m" + (f", {expected:.2g} s" if expected is not None and expected >= LONG else ""))
+        pilots.append(gauge.run(cell, L / cell))
+        told(f"pilot of cells of {label(cell)} m: {pilots[-1].said(len(pilots) == 1)}")
+        known = [pilot for pilot in pilots if math.isfinite(pilot.error)]
+        met = known and known[-1].error <= enough(experiment) * tolerance
+        near = len(known) > 1 and known[-1].error <= REACH * tolerance and order(known) >= ORDERS[0]
+        if met or (near and goal(known, tolerance) < known[-1].cell / PILOT**2):  # nearer than that the next pilots are as good as a guess
+            return finish(experiment, settings, tolerance, available, known)
+        wanted = L / cell * PILOT
+    if not pilots:
+        raise NoChoice("no grid fits")
+    known = [pilot for pilot in pilots if math.isfinite(pilot.error)]
+    if len(known) > 1 and known[-1].error <= REACH * tolerance and order(known) >= ORDERS[0]:
+        return finish(experiment, settings, tolerance, available, known)
+    raise NoChoice(f"{because(pilots, known, tolerance)}{stopped}")
+
+
+def because(pilots: list[Pilot], known: list[Pilot], tolerance: float) -> str:
+    """Why pilots do not lead to a cell."""
+    if not known:
+        return f"no pilot of {len(pilots)} has an error" + (f": {pilots[-1].ended}" if pilots[-1].ended else "")
+    if len(known) > 1 and known[-1].error <= REACH * tolerance:
+        return f"the error falls with order {order(known):.2g} only, from {100 * known[-2].error:.2g} % to {100 * known[-1].error:.2g} %"
+    return f"not within {100 * REACH * tolerance:g} % after {len(pilots)} pilots, the last {100 * known[-1].error:.2g} %"
+
+
+def finish(experiment: Any, settings: dict[str, Any], tolerance: float, available: list[float], known: list[Pilot]) -> tuple[float, float, float, list[Pilot]]:
+    """From the pilots to the cell."""
+    last = known[-1]
+    good = next((pilot for pilot in known if pilot.error <= enough(experiment) * tolerance), None)
+    if good is not None:
+        return good.cell, good.error, good.seconds, known
+    cell = next((h for h in available if h <= goal(known, tolerance) * (1 + 1e-9)), None)
+    if cell is None:
+        raise NoChoice("no grid is as fine as the tolerance asks for")
+    predicted = last.error * (cell / last.cell) ** min(order(known), ORDERS[1])
+    return cell, predicted, last.seconds * ratio(experiment, settings, cell, last.cell), known
+
+
+def enough(experiment: Any) -> float:
+    """The part of the tolerance that a pilot's error may take: all of it where the error is known, MARGIN where it is estimated."""
+    return 1.0 if experiment.exact is not None else MARGIN
+
+
+def order(known: list[Pilot]) -> float:
+    """Of the error in the cell, by the last two pilots."""
+    return math.log(known[-2].error / known[-1].error) / math.log(known[-2].cell / known[-1].cell)
+
+
+def goal(known: list[Pilot], tolerance: float) -> float:
+    """The cell at which the error should be MARGIN of the tolerance [m]."""
+    return known[-1].cell * (MARGIN * tolerance / known[-1].error) ** (1 / min(max(order(known), ORDERS[0]), ORDERS[1]))
+
+
+def ratio(experiment: Any, settings: dict[str, Any], cell: float, other: float) -> float:
+    """How much more a run costs with one cell than with another, by the estimates."""
+    return estimated(experiment, settings, cell) / estimated(experiment, settings, other)
+
+
+def estimated(experiment: Any, settings: dict[str, Any], cell: float) -> float:
+    """Seconds of a run with a cell, by the estimates."""
+    from mpm.config import load
+    from mpm.runner import estimate
+
+    return estimate(load(experiment.template(), settings | {"grid.cell": cell}))["seconds"]
+
+
+class Gauge:
+    """Runs pilots and says their errors."""
+
+    def __init__(self, experiment: Any, settings: dict[str, Any]):
+        self.experiment, self.settings = experiment, settings
+        self.before: dict[str, float] | None = None
+        self.warm = False
+
+    def expected(self, cell: float, pilots: list[Pilot]) -> float | None:
+        """Seconds that a pilot should take: by the last one that ran, else by the estimates; None where neither is known."""
+        from mpm.scene.refusal import SceneError
+
+        timed = [pilot for pilot in pilots if math.isfinite(pilot.seconds)]
+        try:
+            if timed:
+                return timed[-1].seconds * ratio(self.experiment, self.settings, cell, timed[-1].cell)
+            return estimated(self.experiment, self.settings, cell)
+        except SceneError:
+            return None
+
+    def run(self, cell: float, cells: float) -> Pilot:
+        """One pilot; of the first without an exact solution there is no error yet."""
+        from mpm.config import load
+        from mpm.runner import run_point, warm
+        from mpm.scene.refusal import SceneError
+
+        point = load(self.experiment.template(), self.settings | {"grid.cell": cell})
+        try:
+            if not self.warm:
+                warm(point)
+                self.warm = True
+            began = time.process_time()
+            run = run_point(point)
+        except SceneError as error:
+            return Pilot(cells, cell, math.inf, math.nan, str(error).splitlines()[0])
+        seconds = time.process_time() - began
+        if not run.outcome.ok:
+            return Pilot(cells, cell, math.inf, math.nan, f"{run.outcome.kind}: {run.outcome.message}".strip(": "))
+        if seconds < LONG:
+            began = time.process_time()
+            run_point(point, compare=False)
+            seconds = min(seconds, time.process_time() - began)
+        return Pilot(cells, cell, self.error(run), seconds)
+
+    def error(self, run: Any) -> float:
+        """Against the exact solution; else the change since the last pilot."""
+        from mpm.study.chart import RELATIVE, wanted_errors
+
+        series = run.series
+        spread = float(np.max(series["temperature_max"]) - np.min(series["temperature_min"])) if "temperature_max" in series else 1.0
+        chart = self.experiment.chart
+        scale = chart.scale if chart is not None and chart.scale is not None else spread or 1.0
+        if self.experiment.exact is not None:
+            names = wanted_errors(self.experiment, run.finals)
+            return max(abs(run.finals[name]) / (1.0 if name in RELATIVE else scale) for name in names)
+        found = {name: run.finals[name] for name in observed(self.experiment, run.finals) if math.isfinite(run.finals[name])}
+        before, self.before = self.before, found
+        if not found or before is None or set(before) != set(found):  # a time that only one of them reaches is infinitely far
+            return math.inf
+        return max(abs(value - before[name]) / (scale if "temperature" in name else abs(value) or 1.0) for name, value in found.items())
+
+
+def observed(experiment: Any, finals: dict[str, float]) -> list[str]:
+    """The finals that a config cares about: what it lists under chart.observables, else its observables and probes."""
+    from mpm.records.variables import dataset_name
+
+    listed = experiment.chart.observables if experiment.chart is not None and experiment.chart.observables else ()
+    listed = listed or [dataset_name(name) for name in experiment.output.observables] + [f"temperature_{probe}" for probe in experiment.output.probes]
+    found = [name for name in listed if name in finals]
+    if not found:
+        raise NoChoice("nothing to keep a tolerance of: name `exact:`, or observables or probes under `output:`")
+    return found
