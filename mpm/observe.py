@@ -22,7 +22,10 @@ AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
 @dataclass
 class Watch:
-    """What to record. `exact(x (N, D), t) -> theta (N,)`, or the Errors of a motion (mpm.error), where a config names its solution."""
+    """What to record. `exact(x (N, D), t) -> theta (N,)`, or the Errors of a motion (mpm.error), where a config names its solution.
+
+    x is where a particle was at the start: a body that flies or turns takes its temperatures along.
+    """
 
     probes: dict[str, np.ndarray] = field(default_factory=dict)
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
@@ -55,6 +58,7 @@ class Recorder:
         self.frames: list[tuple[float, dict, dict]] = []
         self.places = {name: self.place(scene, np.asarray(x, float)) for name, x in scene.watch.probes.items()}
         self.errors = scene.watch.exact if isinstance(scene.watch.exact, Errors) else None
+        self.origin = [body.particles.x.astype(float) for body in self.warm] if scene.watch.exact is not None and self.errors is None else []
         self.crossed = {name: math.nan for name, _, _ in scene.watch.thresholds}
         self.seen = {probe: (0.0, self.probe(probe)) for _, probe, _ in scene.watch.thresholds}
 
@@ -170,9 +174,9 @@ class Recorder:
         yield "heat_ledger", total - clock.exchanged - clock.local
         for name in self.places:
             yield f"temperature_{name}", self.probe(name)
-        if scene.watch.exact is not None and self.errors is None:
+        if self.origin:
             V = np.concatenate([body.particles.V0 * body.particles.J for body in self.warm])
-            error = theta - scene.watch.exact(np.concatenate([body.particles.x for body in self.warm]), clock.time)
+            error = theta - scene.watch.exact(np.concatenate(self.origin), clock.time)
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
             yield "error_max", np.max(np.abs(error))
 

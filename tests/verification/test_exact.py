@@ -103,3 +103,13 @@ def test_a_moving_run_reports_its_error(core):
     run = mpm.run_point(core.experiment(1, changes, grid=grid, bodies=body, surfaces=air, exact={"robin_slab": {}}))
     assert run.outcome.ok and run.series["error_l2"][0] == 0.0
     assert 0 < run.finals["error_l2"] < 100 * 1.5e-3 and run.finals["error_l2"] <= run.finals["error_max"]
+
+
+def test_errors_are_taken_where_the_body_has_gone(core):
+    """The same slab, three cells further at the end: as at rest, but for what its way across the grid costs."""
+    body = {"body": {"shape": {"box": {"lower": [0.5], "upper": [2.5]}}, "temperature": core.HOT, "material": "solid"}}
+    air = [{"of": "body", "convection": {"beta": 1.0, "outside": core.COLD}}]
+    unit = {"kappa": 1.0, "alpha": 1.0, "materials.solid.density": 1.0, "time.end": 0.2, "output.every": 0.1}
+    sections = {"grid": {"dimension": 1, "size": [3.0], "cell": 0.0625}, "bodies": body, "surfaces": air, "exact": {"robin_slab": {}}}
+    rest, thrown = (mpm.run_point(core.experiment(1, unit | more, **sections)) for more in ({}, {"bodies.body.velocity": [0.9]}))
+    assert thrown.outcome.ok and rest.finals["error_l2"] < 0.1 and thrown.finals["error_l2"] < 2 * rest.finals["error_l2"]
