@@ -23,20 +23,25 @@ def test_the_same_run_twice_gives_the_same_bits(core):
 
 
 def neutral(core, dimension):
-    """Mechanics alone, and the same with heat that does nothing: the same bits."""
+    """Mechanics alone, and the same with heat that does nothing, also by zeros of exchange and coupling: the same bits in every field and series of both."""
 
     def stir(scene):
         p = scene.bodies[0].particles
         p.v[:], p.C[:] = 0.3 * (p.x - 1.0), 0.3 * np.eye(p.x.shape[1])
 
-    idle = core.experiment(dimension, {"kappa": 0.0}, drop=("surfaces", "expansion", "heating"))
+    zeros = {"kappa": 0.0, "beta": 0.0, "materials.solid.expansion.modulus.gamma": 0.0}
     bare = core.experiment(dimension, drop=("surfaces", "expansion", "heating", "heat"))
-    (warm, run), (cold, other) = core.play(idle, stir), core.play(bare, stir)
-    assert run.outcome.ok and run.steps == other.steps > 3
-    a, b = warm.bodies[0].particles, cold.bodies[0].particles
-    assert np.ptp(a.J) > 1e-3
-    for name in ("x", "v", "C", "B", "J"):
-        assert np.array_equal(getattr(a, name), getattr(b, name)), (name, np.abs(getattr(a, name) - getattr(b, name)).max())
+    idle = [core.experiment(dimension, {"kappa": 0.0}, drop=("surfaces", "expansion", "heating")), core.experiment(dimension, zeros)]
+    cold, other = core.play(bare, stir)
+    for warm, run in (core.play(experiment, stir) for experiment in idle):
+        assert run.outcome.ok and run.steps == other.steps > 3
+        a, b = warm.bodies[0].particles, cold.bodies[0].particles
+        assert np.ptp(a.J) > 1e-3
+        for name in ("x", "v", "C", "B", "J"):
+            assert np.array_equal(getattr(a, name), getattr(b, name)), (name, np.abs(getattr(a, name) - getattr(b, name)).max())
+        assert len(other.series) > 10 and not any(name.startswith(("heat", "temperature")) for name in other.series)
+        for name, values in other.series.items():
+            assert np.array_equal(run.series[name], values), name
 
 
 def test_physics_left_out_is_neutral(core):

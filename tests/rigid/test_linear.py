@@ -57,6 +57,28 @@ def test_disc_order(series, bi):
     assert series.order(errors) > (2.7 if np.isfinite(bi) else 2.4)
 
 
+def rod(n, bi, method):
+    """An infinite cylinder as an axisymmetric body without caps, n cells to its radius, which ends anywhere in a cell; two cells high."""
+    surface = (("lateral", bi, 0.0),)
+    return solve([RigidBody(Cylinder(1.0, 2 / n, (0.0, 0.3 / n)), 1.0, 1.0, 1.0, 1.0, surface)], "axisymmetric", 1 / n, end=0.2, method=method)
+
+
+@pytest.mark.parametrize(("bi", "bound"), [(1.0, 5e-5), (10.0, 3e-4), (np.inf, 6e-4)])
+@pytest.mark.parametrize("n", [4.0, 4.3, 4.7])
+def test_cylinder_in_five_steps(series, n, bi, bound):
+    run = rod(n, bi, Method(step=0.04))
+    assert run.unknowns <= 120 and run.steps == 5
+    assert series.rms(run, lambda r: series.cylinder(r, 0.2, bi), lambda x: x[:, 0]) < bound
+
+
+@pytest.mark.parametrize("bi", [1.0, 10.0, np.inf])
+@pytest.mark.parametrize("part", [0.0, 0.3])
+def test_cylinder_order(series, part, bi):
+    """Declared order 3 in the cell, the surface on a grid line and off it."""
+    errors = [series.rms(rod(n * (1 + part / 3), bi, Method(tolerance=1e-6)), lambda r: series.cylinder(r, 0.2, bi), lambda x: x[:, 0]) for n in (3, 6, 12)]
+    assert series.order(errors) > 2.7
+
+
 @pytest.mark.parametrize("bi", [1.0, 10.0, np.inf])
 def test_sphere_as_an_axisymmetric_body(series, bi):
     run = solve([body(Ball((0.0, 0.3), 1.0), bi)], "axisymmetric", 1 / 6, end=0.2)
