@@ -1,13 +1,15 @@
 """The figure of `mpm stability`: a panel a method; points by outcome, the measured boundary, theory's lines.
 
-Blue dots completed, orange marks did not, a mark a reason. Black: the boundary, refined between the last point
-within and the first beyond. Dashed: theory.
+Blue dots completed, orange marks did not, a mark a reason; the darker, the faster grew what the map watches, darkest where a run ended before three
+outputs could tell. Black: the boundary, refined between the last point within and the first beyond. Dashed: theory.
 """
 
 import math
 from typing import Any
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.lines import Line2D
 
 from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, figure, plain_ticks, styled
@@ -16,6 +18,8 @@ WITHIN, BEYOND = OKABE_ITO[0], OKABE_ITO[1]
 COLUMNS = 4
 LINES = (OKABE_ITO[3], OKABE_ITO[4], OKABE_ITO[5], "#7a5195")
 SAFE = OKABE_ITO[2]
+RATES = LinearSegmentedColormap.from_list("rates", ["#f2a46b", BEYOND, "#6b2300"])
+SLOWEST = 1e-3  # of the fastest growth: below it marks get no lighter
 
 
 def draw(tree: Any) -> Any:
@@ -39,6 +43,7 @@ class Figure:
         for cause in self.points.outcome.values[self.points.is_beyond.values == 1]:
             causes[str(cause)] = causes.get(str(cause), 0) + 1
         self.causes = sorted(causes, key=causes.get, reverse=True)
+        self.norm = self.rates()
 
     def draw(self) -> Any:
         """All panels, and a legend that holds for all of them."""
@@ -56,7 +61,29 @@ class Figure:
         for ax in axes[:, 0]:
             ax.set_ylabel(self.axis("boundary"))
         self.legend(fig, axes)
+        if self.norm is not None:
+            self.bar(fig, axes)
         return fig
+
+    def rates(self) -> LogNorm | None:
+        """The range of growth rates of what failed; None where the map watches none, or none grew."""
+        growth = self.points.growth.values[self.points.is_beyond.values == 1]
+        growth = growth[np.isfinite(growth) & (growth > 0)]
+        return LogNorm(max(growth.min(), SLOWEST * growth.max()) / 1.01, growth.max() * 1.01) if len(growth) else None
+
+    def colours(self, growth: np.ndarray) -> Any:
+        """A colour a failed point."""
+        if self.norm is None:
+            return BEYOND
+        return RATES(self.norm(np.clip(np.where(np.isnan(growth), np.inf, growth), self.norm.vmin, self.norm.vmax)))
+
+    def bar(self, fig: Any, axes: Any) -> None:
+        """What the shades of the marks mean."""
+        bar = fig.colorbar(ScalarMappable(self.norm, RATES), ax=axes, location="right", shrink=0.8, aspect=40, pad=0.01)
+        plain_ticks(bar.ax.yaxis)
+        said = f"growth of {self.root.attrs['growth_of']} where it failed, 1/{self.root.attrs['per']}"
+        bar.set_label(f"{said}\n(darkest: faster, or ended before it could be told)", fontsize=8)
+        bar.outline.set_visible(False)
 
     def axis(self, name: str) -> str:
         """What an axis is called: as the config says; nothing is added to a name that it chose."""
@@ -65,7 +92,7 @@ class Figure:
     def panel(self, ax: Any, index: int) -> None:
         """Points, boundary and theory of one panel."""
         mine = self.points.panel_of.values == index
-        at, along, beyond = (self.points[name].values[mine] for name in ("at", "along", "is_beyond"))
+        at, along, beyond, growth = (self.points[name].values[mine] for name in ("at", "along", "is_beyond", "growth"))
         outcome = self.points.outcome.values[mine]
         ok = beyond == 0
         ax.set_title(self.panels[index])
@@ -75,7 +102,7 @@ class Figure:
         for number, cause in enumerate(self.causes):
             here = ~ok & (outcome == cause)
             mark = MARKS[number % len(MARKS)]
-            ax.scatter(at[here], along[here], s=16, color=BEYOND, marker=mark, lw=0.9, alpha=0.75, zorder=2)
+            ax.scatter(at[here], along[here], s=16, color=self.colours(growth[here]), marker=mark, lw=0.9, alpha=0.85, zorder=2)
         low, high = np.min(self.points.along.values), np.max(self.points.along.values)
         within, after = self.root.within.values[index], self.root.beyond.values[index]
         known = np.isfinite(within) & np.isfinite(after)

@@ -43,11 +43,11 @@ def main() -> None:
 
 
 def small(path: Path) -> None:
-    """A picture of few colours in a third of the bytes, for the repository."""
+    """A picture of a palette, in half of the bytes, for the repository."""
     from PIL import Image  # comes with matplotlib
 
     with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(96, dither=Image.Dither.NONE)
+        few = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
     few.save(path, optimize=True)
 
 

@@ -2,12 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import mpm
 from mpm.study.choose import choose, numerical, physics, rank, reach
 from mpm.study.figures import STUDIES
-from mpm.study.pilots import NoChoice, grids, refine
+from mpm.study.pilots import NoChoice, grids, left, refine, settled
 from mpm.study.promises import PROBLEMS, rivals
 
 SLAB = {
@@ -83,6 +84,33 @@ def test_without_an_exact_solution_the_observables_are_kept():
     found = choose(mpm.load(tree), 1e-3, [row("implicit", 1e-5, 1e-3, **IMPLICIT)])
     fine = mpm.run_point(mpm.load(tree, {"grid.cell": 0.03125, "method.rigid": {"implicit": {"tolerance": 1e-8}}})).finals["temperature_centre"]
     assert mpm.run_point(mpm.load(tree, found.settings)).finals["temperature_centre"] == pytest.approx(fine, abs=1e-3)
+
+
+def test_a_change_that_is_small_by_chance_is_not_taken_for_the_error():
+    """The loaf's time to 95 degC over its cells in mm (limit 690 s): the last change alone says 0.3 % where 2.8 % are left."""
+    cells, times = [11.67, 7.0, 4.375, 2.917], [662.9, 656.8, 667.8, 669.9]
+    assert left(cells, times) > 3 * (times[-1] - times[-2])
+    cells, times = [*cells, 1.944, 1.296, 0.854], [*times, 678.2, 683.5, 686.9]
+    assert 690 - times[-1] < left(cells, times) < 4 * (690 - times[-1])
+    smooth = [3 + 5 * h**2 for h in cells]
+    assert settled(np.array(cells), np.array(smooth)) == pytest.approx(2, abs=1e-6)
+    assert left(cells, smooth) == pytest.approx(1.25 * 5 * cells[-1] ** 2)
+
+
+def test_pilots_are_told_of_and_go_on_where_an_error_falls_slowly(monkeypatch):
+    """Errors that fall by a tenth at first, then with the cell: no guess from the slow part. A pilot that would take too long is not begun; that is said."""
+    from mpm.study.pilots import Gauge, Pilot
+
+    errors = {1.0: 0.045, 2 / 3: 0.041, 0.4: 0.017, 0.25: 0.009}
+    nearest = lambda cell: min(errors, key=lambda h: abs(h - cell))  # noqa: E731
+    monkeypatch.setattr(Gauge, "run", lambda self, cell, cells: Pilot(cells, cell, errors[nearest(cell)], 0.1))
+    heard = []
+    found = choose(mpm.load(SLAB), 0.01, [row("implicit", 1e-5, 1e-3, **IMPLICIT)], heard.append)
+    assert found.settings["grid.cell"] == pytest.approx(0.25) and found.predicted == 0.009
+    assert len(heard) == 8 and heard[0] == "implicit, pilot of cells of 1 m" and heard[-1].endswith("error 0.9 %, 0.1 s")
+    monkeypatch.setattr(Gauge, "expected", lambda self, cell, pilots: 0.1 if len(pilots) < 2 else 400.0)
+    with pytest.raises(NoChoice, match=r"order 0\.23 only, from 4\.5 % to 4\.1 %, and the next, of cells of 0\.4 m, would take 4e\+02 s where 120 s are left"):
+        choose(mpm.load(SLAB), 0.01, [row("implicit", 1e-5, 1e-3, **IMPLICIT)])
 
 
 def test_what_cannot_be_chosen_is_said():

@@ -64,6 +64,26 @@ def test_the_figure_is_drawn(tmp_path):
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["clipped"]
 
 
+def test_growth_rates_are_shades_and_lines_of_one_name_one_entry(tmp_path):
+    """What failed is the darker the faster it grew, darkest where it ended too soon to tell; two panels' limits under one name stand once in the legend."""
+    from matplotlib.colors import to_hex
+
+    from mpm.plots.stability import RATES, draw
+    from mpm.sweep.api import tree_of
+
+    panels = {"radial": {"map": "radial"}, "clipped": {"map": "clipped"}}
+    lines = [{"label": "limit", "formula": f"{k}*x/3e7", "panels": [panel], "role": "safe"} for k, panel in enumerate(panels, 1)]
+    tree = tree_of(computed(tmp_path, panels=panels, lines=[*lines, {"label": "step", "formula": "0.01", "role": "safe"}]).dataset)
+    points = tree["points"].dataset
+    rate = np.where(np.arange(len(points.entry)) % 3, np.linspace(0.01, 1.0, len(points.entry)), np.nan)
+    tree["points"] = points.assign(growth=("entry", rate))
+    figure = draw(tree)
+    assert [entry.get_text() for entry in figure.legends[0].get_texts()].count("limit") == 1
+    shades = [to_hex(colour) for ax in figure.axes[:2] for marks in ax.collections[1:] for colour in np.atleast_2d(marks.get_facecolor())]
+    assert to_hex(RATES(1.0)) in shades and len(set(shades)) > 4
+    assert "growth of" in figure.axes[-1].get_ylabel()
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
