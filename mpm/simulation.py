@@ -255,12 +255,12 @@ def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) ->
     nodes, force, (boxes, blocks), _ = buffers
     scene.order.refresh()
     clock.reset()
-    astray = False
+    astray, begun, reports = False, clock.steps, clock.reports
     if scene.order.sliced:
-        astray = advance_slabs(scene, nodes, force, boxes, blocks, float(dt), steps, clock.reports)
+        astray = advance_slabs(scene, nodes, force, boxes, blocks, float(dt), steps, begun, reports)
     else:
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, scene.walls, scene.gravity, dt, steps, clock.reports)
-    scene.order.passed(math.sqrt(max(clock.reports[:, SPEED])) * dt * steps, steps, astray)
+        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, scene.walls, scene.gravity, dt, steps, begun, reports)
+    scene.order.passed(math.sqrt(max(reports[:, SPEED])) * dt * steps, steps, astray)
 
 
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:

@@ -14,6 +14,7 @@ from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.blocks import BLOCK, forget, mark_box, run, span, thin, wipe
 from mpm.boundary.walls import empty, fold, impose, unfold
+from mpm.integrate.dither import dither
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.load import act
 from mpm.integrate.locking import any_averages, average_all, relax
@@ -30,8 +31,8 @@ from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick
 
 
 @kernel
-def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, steps, reports):
-    """`steps` steps of `dt` of all bodies on one grid.
+def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, steps, begun, reports):
+    """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run.
 
     nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
     boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py.
@@ -47,7 +48,7 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls,
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
             on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
-        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports):
+        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, reports):
             return
         if opening:
             sparse = thin(shape, boxes[1 - now], blocks[1 - now])
@@ -78,26 +79,27 @@ def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks
 
 
 @kernel
-def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports):
+def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, reports):
     """Gather from buffer `now` (unless it is the opening of a run), respond, and scatter on to the other (unless it is the last step).
 
     False where a particle fails.
     """
     ok, b = True, 0
     for body in literal_unroll(bodies):  # bodies of several types: Numba unrolls a loop without exits only
-        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, reports[b])
+        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last,
+                              reports[b])  # fmt: skip
         b += 1
     return ok
 
 
 @kernel
-def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, opening, last, report):
+def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
-    reach = reaches(space, 0 if last else x.shape[0])
+    reach, shake = reaches(space, 0 if last else x.shape[0]), dither(space, x, begun + step)
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
+        if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, shake, opening, last, report):
             return False
         if not last:
             spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK])
@@ -106,7 +108,7 @@ def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes,
 
 
 @kernel(inline=True)
-def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, opening, last, report):
+def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, shake, opening, last, report):
     """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
     x, past = body.particles.x, 0.0 if opening else dt
     if opening and not sound(space, body, first, count):
@@ -119,7 +121,7 @@ def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, 
         collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
         carry(scheme, body.particles, first, chunk, count, change, last)
         relax(body.locking, space, x, first, chunk, count, dt)
-        move(space, x, chunk, first, count, dt, report)
+        move(space, x, chunk, first, count, dt, shake, report)
     if report[CODE] == 0.0:
         respond(space, gradient, body, chunk, first, count, past, dt, report)
     if report[CODE] != 0.0:
@@ -197,10 +199,10 @@ def to_velocity(nodes, D, blocks, words, begin, end, gravity, dt):
 
 
 @kernel(inline=True)
-def move(space, x, chunk, first, count, dt, report):
-    """x += dt sum w v_i+, also in chunk.place. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
+def move(space, x, chunk, first, count, dt, shake, report):
+    """x += dt sum w v_i+ (and `shake`: dither.py), also in chunk.place. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
     shape, inside, D, n, real = extents(space), room(space.basis), x.shape[1], chunk.m.shape[0], x.dtype.type
-    place, step, speed, good = chunk.place, splat8(real(dt)), splat8(real(0)), splat8(real(1))
+    place, step, speed, good, even = chunk.place, splat8(real(dt)), splat8(real(0)), splat8(real(1)), splat8(real(shake))
     for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
         for c in range(D):
             poke(chunk.v, c * n + p, 0.0)
@@ -210,7 +212,7 @@ def move(space, x, chunk, first, count, dt, report):
             # Node i of an array lies at (i - PAD) h.
             low, high = splat8(real((inside - PAD) * space.h)), splat8(real((shape[c] - 1 - PAD - inside) * space.h))
             v = load8(chunk.v, c * n + p)
-            here = fma(step, v, load8(place, c * n + p))
+            here = load8(place, c * n + p) + fma(step, v, even)
             store(place, c * n + p, here)
             square = fma(v, v, square)
             good = good * below(low, here) * below(here, high)

@@ -20,6 +20,7 @@ from mpm.basis import stencil
 from mpm.boundary import extents
 from mpm.boundary.blocks import thin
 from mpm.boundary.walls import empty
+from mpm.integrate.dither import dither
 from mpm.integrate.explicit import clean, on_nodes, step_chunk
 from mpm.integrate.locking import any_averages
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL
@@ -51,6 +52,7 @@ class Moment(NamedTuple):
     now: int  # buffer to gather from
     dt: float
     step: int
+    begun: int  # steps of the run before the block
     opening: bool
     last: bool
     late: bool  # only the late chunks
@@ -85,13 +87,13 @@ def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, 
     box, report, there, pushed = slabs.boxes[row], slabs.reports[row, b], nodes[1 - moment.now], force[1 - moment.now]
     x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
     starts = moment.opening or moment.late
-    reach = reaches(space, 0 if moment.last else end - begin)
+    reach, shake = reaches(space, 0 if moment.last else end - begin), dither(space, x, moment.begun + moment.step)
     for first in range(begin, end, CHUNK):
         if moment.late and late[first] == STILL:
             continue
         count = min(CHUNK, end - first)
-        if not step_chunk(space, gradient, scheme, body, chunk, change, nodes[moment.now], force[moment.now], first, count, moment.dt, moment.step, starts,
-                          moment.last, report):  # fmt: skip
+        if not step_chunk(space, gradient, scheme, body, chunk, change, nodes[moment.now], force[moment.now], first, count, moment.dt, moment.step, shake,
+                          starts, moment.last, report):  # fmt: skip
             return
         if moment.last:
             continue
@@ -126,7 +128,7 @@ def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sp
     on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
 
 
-def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, reports) -> bool:
+def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
     space, bodies, starts, axis = scene.space, scene.bodies, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
@@ -146,7 +148,7 @@ def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, reports) -> boo
                 around = scene.walls, scene.gravity
                 nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, dt, slabs.reports[M])
             share_out(reach, slabs)
-            moment = Moment(now, dt, step, opening, last, False, sparse)
+            moment = Moment(now, dt, step, begun, opening, last, False, sparse)
             crew.work(order, lambda which, m=moment: pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, which, nodes, force, m))
             empty(extents(space), slabs.boxes[M])
             if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():

@@ -41,7 +41,7 @@ def moves(space, body, chunk, dt, report, times):
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
             lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
-            move(space, x, chunk, first, min(CHUNK, x.shape[0] - first), dt, report)
+            move(space, x, chunk, first, min(CHUNK, x.shape[0] - first), dt, 0.0, report)
 
 
 @kernel
