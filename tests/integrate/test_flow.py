@@ -12,7 +12,8 @@ from mpm.scene.point import run_zero
 
 STEP, STEPS, UNIT = 0.05, 5, 1e-14  # UNIT: moduli so small that no force changes the motion
 RATES = {1: (-0.4,), 2: (-0.7, 0.3), "axisymmetric": (0.3, -0.4), 3: (0.5, -0.3, 0.2)}  # v = rate X, along axes that are turned in two and three directions
-CASES = [pytest.param(dimension, form, marks=[] if (dimension, form) == (2, "radial") else pytest.mark.slow) for dimension in RATES for form in ("radial", "clipped")]
+CASES = [(dimension, form) for dimension in RATES for form in ("radial", "clipped")]
+CASES = [pytest.param(*case, marks=[] if case == (2, "radial") else pytest.mark.slow) for case in CASES]
 
 
 def material(form):
