@@ -36,7 +36,7 @@ def exact(experiment):
     if (kind, dimension) not in (("ball", 2), ("cylinder", "axisymmetric")):
         raise ValueError("robin_cylinder needs a ball in grid.dimension 2, or a cylinder in an axisymmetric scene with side lateral")
     kappa, diffusivity = constants(experiment, body)
-    beta, out = one_exchange(experiment, name)
+    beta, out = one_exchange(experiment, name, "lateral" if kind == "cylinder" else "all")
     z = roots(beta * body.shape.radius / kappa)
     theta = series(z, 2 * j1(z) / (z * (j0(z) ** 2 + j1(z) ** 2)), j0, body.temperature, out, body.shape.radius, diffusivity)
     centre = moved(experiment, body.shape.centre) if kind == "ball" else None

@@ -53,7 +53,7 @@ def exact(experiment):
     name, body = only_body(experiment)
     a, b, centre = radii(experiment, body)
     kappa, diffusivity = constants(experiment, body)
-    beta, out = one_exchange(experiment, name)
+    beta, out = one_exchange(experiment, name, "lateral" if experiment.grid.dimension == "axisymmetric" else "all")
     Bi = beta / kappa
     z = roots(a, b, Bi)
     ends = [mode(z, r, a, Bi) for r in (a, b)]

@@ -63,6 +63,7 @@ REFUSED = {
     "needs a box": lambda: problem("slab", 1.0, dimension=2),
     "robin_cylinder needs": lambda: problem("cylinder", 1.0, dimension=1),
     "one surface": lambda: problem("slab", 1.0, surfaces=[{"of": "it", "side": "left", "convection": {"beta": 1, "outside": 300}}]),
+    "with side lateral": lambda: problem("cylinder", 1.0, "axisymmetric", surfaces=[{"of": "it", "convection": {"beta": 1, "outside": 300}}]),
     "constant kappa": lambda: problem(
         "slab", 1.0, materials={"unit": {"density": 1, "heat": {"fourier": {"kappa": {"logistic": {"low": 1, "high": 2, "at": 300, "width": 1}}, "alpha": 1}}}}
     ),
