@@ -9,6 +9,7 @@
 
 import json
 import math
+import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -97,10 +98,10 @@ def choose(experiment: Any, tolerance: float, fronts: list[dict] | None = None, 
     ranked = rank(kind, tolerance, fronts)
     if not ranked:
         raise NoChoice(f"no chart of {kind} reaches {100 * tolerance:g} %")
-    why_not = []
+    why_not, began = [], time.process_time()
     for method, settings, charts in ranked[:3]:
         try:
-            cell, predicted, seconds, pilots = refine(experiment, settings, tolerance, lambda text, name=method: told(f"{name}, {text}"))
+            cell, predicted, seconds, pilots = refine(experiment, settings, tolerance, lambda text, name=method: told(f"{name}, {text}"), began)
         except NoChoice as why:
             why_not.append(f"{method}: {why}")
             continue

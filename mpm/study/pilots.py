@@ -4,7 +4,7 @@
 
 Each has PILOT times the cells of the last, until one keeps the tolerance, or until the error is within REACH of it, falls with an order p of ORDERS[0] or
 more, and the cell which that asks for, n* = n (e/(MARGIN tol))^(1/p), is farther than the next two pilots (three, where errors are estimated).
-No pilot starts that would end, by the time of the last one, more than MOST_SECONDS after the first began.
+No pilot starts that would end, by the time of the last one, more than MOST_SECONDS after the first of any method began.
 Error     as `mpm chart` has it: against `exact:`; without one, of the observables that the config lists (probes, time_to, ...) by how they change between
           pilots: |f - f_k|/((h_k/h)^p - 1), the larger for the two before; p = 1, or up to 2 where two estimates of it agree, and SAFETY times that
           (cells that bodies cut make a change small by chance: the loaf's time to 95 degC at 2.9 mm lies 0.3 % from that at 4.4 mm, and 2.8 % from its limit)
@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from mpm.config.vary import label
+from mpm.reduce.gap import STEADY
 from mpm.study.richardson import SAFETY
 from mpm.study.richardson import order as fitted
 
@@ -38,20 +39,25 @@ class NoChoice(ValueError):
 
 @dataclass(frozen=True)
 class Pilot:
-    """A run on the way: cells over the smallest extent, cell [m], error (inf: none), seconds of processor time, why it ended early."""
+    """A run on the way: cells over the smallest extent, cell [m], error (inf: none), seconds of processor time, why it ended early, which final is worst."""
 
     cells: float
     cell: float
     error: float
     seconds: float
     ended: str = ""
+    worst: str = ""
 
     def said(self, first: bool) -> str:
         """In words."""
         if self.ended:
             return self.ended
-        error = f"error {100 * self.error:.2g} %" if math.isfinite(self.error) else "to compare the next with" if first else "no error"
+        error = f"error {self.much()}" if math.isfinite(self.error) else "to compare the next with" if first else "no error"
         return f"{error}, {self.seconds:.2g} s"
+
+    def much(self) -> str:
+        """The error, and of what."""
+        return f"{100 * self.error:.2g} %" + (f" ({self.worst})" if self.worst else "")
 
 
 def silent(_: str) -> None:
@@ -79,19 +85,21 @@ def grids(experiment: Any) -> Iterator[float]:
             yield h
 
 
-def refine(experiment: Any, settings: dict[str, Any], tolerance: float, told: Callable[[str], None] = silent) -> tuple[float, float, float, list[Pilot]]:
-    """(cell, predicted error, seconds, pilots) of one method."""
+def refine(
+    experiment: Any, settings: dict[str, Any], tolerance: float, told: Callable[[str], None] = silent, began: float | None = None
+) -> tuple[float, float, float, list[Pilot]]:
+    """(cell, predicted error, seconds, pilots) of one method. `began`: when the first pilot of all did, by the processor's clock."""
     L, available = extent(experiment), list(grids(experiment))
     pilots: list[Pilot] = []
     gauge, wanted = Gauge(experiment, settings), 3.0 if experiment.moving else 2.0
-    began, stopped = time.process_time(), ""
+    began, stopped = time.process_time() if began is None else began, ""
     while len(pilots) < MOST_PILOTS:
         cell = next((h for h in available if h <= L / wanted * (1 + 1e-9)), None)
         if cell is None or (pilots and cell >= pilots[-1].cell):
             break
         expected = gauge.expected(cell, pilots)
         if time.process_time() - began + (expected or 0.0) > MOST_SECONDS:
-            stopped = f", and the next, of cells of {label(cell)} m, would take {expected:.2g} s where {MOST_SECONDS:g} s are left to all"
+            stopped = f"the next, of cells of {label(cell)} m, would take {expected or 0.0:.2g} s: pilots may take {MOST_SECONDS:g} s together"
             break
         told(f"pilot of cells of {label(cell)} m" + (f", {expected:.2g} s" if expected is not None and expected >= LONG else ""))
         pilots.append(gauge.run(cell, L / cell))
@@ -104,11 +112,11 @@ def refine(experiment: Any, settings: dict[str, Any], tolerance: float, told: Ca
             return finish(experiment, settings, tolerance, available, known)
         wanted = L / cell * PILOT
     if not pilots:
-        raise NoChoice("no grid fits")
+        raise NoChoice(stopped.replace("the next", "a pilot") or "no grid fits")
     known = [pilot for pilot in pilots if math.isfinite(pilot.error)]
     if len(known) > 1 and known[-1].error <= REACH * tolerance and order(known) >= ORDERS[0]:
         return finish(experiment, settings, tolerance, available, known)
-    raise NoChoice(f"{because(pilots, known, tolerance)}{stopped}")
+    raise NoChoice(because(pilots, known, tolerance) + (f", and {stopped}" if stopped else ""))
 
 
 def because(pilots: list[Pilot], known: list[Pilot], tolerance: float) -> str:
@@ -116,8 +124,8 @@ def because(pilots: list[Pilot], known: list[Pilot], tolerance: float) -> str:
     if not known:
         return f"no pilot of {len(pilots)} has an error" + (f": {pilots[-1].ended}" if pilots[-1].ended else "")
     if len(known) > 1 and known[-1].error <= REACH * tolerance:
-        return f"the error falls with order {order(known):.2g} only, from {100 * known[-2].error:.2g} % to {100 * known[-1].error:.2g} %"
-    return f"not within {100 * REACH * tolerance:g} % after {len(pilots)} pilots, the last {100 * known[-1].error:.2g} %"
+        return f"the error falls with order {order(known):.2g} only, from {100 * known[-2].error:.2g} % to {known[-1].much()}"
+    return f"not within {100 * REACH * tolerance:g} % after {len(pilots)} pilots, the last {known[-1].much()}"
 
 
 def finish(experiment: Any, settings: dict[str, Any], tolerance: float, available: list[float], known: list[Pilot]) -> tuple[float, float, float, list[Pilot]]:
@@ -162,7 +170,7 @@ class Gauge:
     def __init__(self, experiment: Any, settings: dict[str, Any]):
         self.experiment, self.settings = experiment, settings
         self.seen: list[tuple[float, dict[str, float]]] = []  # (cell, observables) of the pilots so far
-        self.warm = False
+        self.warm, self.worst = False, ""
 
     def expected(self, cell: float, pilots: list[Pilot]) -> float | None:
         """Seconds that a pilot should take: by the last one that ran, else by the estimates; None where neither is known."""
@@ -198,7 +206,7 @@ class Gauge:
             began = time.process_time()
             run_point(point, compare=False)
             seconds = min(seconds, time.process_time() - began)
-        return Pilot(cells, cell, self.error(run, cell), seconds)
+        return Pilot(cells, cell, self.error(run, cell), seconds, worst=self.worst)
 
     def error(self, run: Any, cell: float = math.nan) -> float:
         """Against the exact solution; else by the pilots before, of which the cell is then needed."""
@@ -218,7 +226,16 @@ class Gauge:
         if not found or len(alike) < 2:
             return math.inf
         gaps = {name: left([h for h, _ in alike], [one[name] for _, one in alike]) for name in found}
-        return max(gap / (scale if "temperature" in name else abs(found[name]) or 1.0) for name, gap in gaps.items())
+        shares = {name: gap / (scale if "temperature" in name else size(series.get(name), found[name])) for name, gap in gaps.items()}
+        self.worst = max(shares, key=shares.get)
+        return shares[self.worst]
+
+
+def size(series: np.ndarray | None, last: float) -> float:
+    """What counts as 100 % of a quantity: how much it changes in the run, at least STEADY of its size (mpm.reduce.gap); of a time, the time itself."""
+    if series is None or not np.isfinite(series).any():
+        return abs(last) or 1.0
+    return max(float(np.nanmax(series) - np.nanmin(series)), STEADY * float(np.nanmax(np.abs(series)))) or 1.0
 
 
 def left(cells: list[float], values: list[float]) -> float:

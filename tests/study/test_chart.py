@@ -8,7 +8,9 @@ import xarray
 
 import mpm
 from mpm.study.chart import chart, with_chart
+from mpm.study.figures import STUDIES
 from mpm.study.front import cheapest, pareto, sentence
+from mpm.study.promises import PROBLEMS
 from mpm.study.richardson import limit
 from mpm.study.timing import Timings
 from mpm.sweep.engine import Options
@@ -168,3 +170,16 @@ def test_the_command_says_the_answer_and_draws(tmp_path, capsys):
     config.write_text(json.dumps(SLAB | {"chart": {"methods": {"a": {"set": {"grid.cel": 1}}}, "refine": {"cell": {"grid.cell": [0.5]}}}}, indent=1))
     assert main(["chart", str(config)]) == 2
     assert "chart.methods.a" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_the_six_charts_refine_cell_and_step_together(name):
+    """Along Co = const steps go as the cell, along dt* = const as its square (manufactured and coupled ones: those of mechanics and of heat)."""
+    chart = mpm.load(STUDIES / f"{name}.yaml").chart
+    assert {"Co = const", "dt* = const"} <= set(chart.refine) and "PIC" in chart.methods and "APIC" in chart.methods
+    for path, power in (("Co = const", 1), ("dt* = const", 2)):
+        refined = {key: np.array(values, float) for key, values in chart.refine[path].items()}
+        cells = refined.pop("grid.cell")
+        assert refined and len(cells) >= 3
+        for steps in refined.values():
+            np.testing.assert_allclose(steps / steps[0], (cells / cells[0]) ** power, rtol=2e-3)
