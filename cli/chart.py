@@ -19,7 +19,7 @@ def chart(
     out: Out = None,
     jobs: Jobs = "auto",
     set_: Set = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Three places a path, and no timing of compilation: under two minutes.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Three places a path, three rounds, compiling not timed: under two minutes once compiled.")] = False,
     compiling: Annotated[bool, typer.Option(help="Time compilation too, each kind of method in a fresh process: 10 to 25 s a kind.")] = True,
     peer: Peer = None,
     timeout: Annotated[float | None, limit("Stop a setting after this long: 90, 90s, 5min, 2h.")] = None,

@@ -25,6 +25,7 @@ from mpm.sweep.report import Reporter
 
 RELATIVE = ("error_displacement", "error_velocity", "error_stress", "error_temperature", "error_relative", "error_frequency", "error_damping")
 DEFAULT = ("error_displacement", "error_relative", "error_l2")
+QUICK = 3  # places a path and rounds of a quick chart
 KEPT = ("status", "error", "outcome", "run_id", "steps")
 
 
@@ -41,7 +42,7 @@ class Charted:
 
 
 def with_chart(experiment: Any, quick: bool = False) -> Any:
-    """The experiment with a chart; `quick` keeps the three coarsest places of each path."""
+    """The experiment with a chart; `quick` keeps the three coarsest places of each path, and three rounds of timing at most."""
     from mpm.config import load
     from mpm.config.experiment import plain
     from mpm.study.menu import usual
@@ -50,6 +51,7 @@ def with_chart(experiment: Any, quick: bool = False) -> Any:
     if not wanted.get("methods"):
         wanted |= {name: value for name, value in usual(experiment).items() if name == "methods" or not wanted.get(name)}
     if quick:
+        wanted["repeats"] = min(QUICK, wanted.get("repeats", QUICK))
         wanted["refine"] = shortened(wanted.get("refine") or {})
         for line in wanted["methods"].values():
             line["refine"] = shortened(line["refine"]) if line.get("refine") else None
@@ -58,7 +60,7 @@ def with_chart(experiment: Any, quick: bool = False) -> Any:
     return made
 
 
-def shortened(paths: dict[str, dict[str, Any]], most: int = 3) -> dict[str, dict[str, Any]]:
+def shortened(paths: dict[str, dict[str, Any]], most: int = QUICK) -> dict[str, dict[str, Any]]:
     return {path: {name: list(values)[:most] for name, values in refined.items()} for path, refined in paths.items()}
 
 

@@ -106,7 +106,8 @@ def choose(experiment: Any, tolerance: float, fronts: list[dict] | None = None, 
             why_not.append(f"{method}: {why}")
             continue
         return Choice(settings | {"grid.cell": cell}, predicted, seconds, method, charts, tuple(pilots))
-    raise NoChoice("; ".join(why_not))
+    hint = "" if experiment.exact is not None else "; `chart.observables` may name fewer quantities that have to keep the tolerance"
+    raise NoChoice("; ".join(why_not) + hint)
 
 
 def offer(experiment: Any, tolerance: float, heard: Callable[[str], None] = silent) -> dict[str, Any]:

@@ -154,7 +154,9 @@ def test_defaults_follow_the_physics_of_the_config():
     np.testing.assert_allclose(ratio["dt* = const"], 4)
     swept = with_chart(mpm.load(SLAB | {"sweep": {"axes": {"beta": [1, 10], "grid.cell": [0.25, 0.5], "method.offset": [[0.0], [0.3]]}}})).chart
     assert len(swept.methods) == 2 and next(iter(swept.methods.values())).refine["cell"]["grid.cell"] == (0.5, 0.25)
-    assert len(next(iter(with_chart(mpm.load(SLAB), quick=True).chart.refine["cell"].values()))) == 3
+    quick = with_chart(mpm.load(SLAB), quick=True).chart
+    assert len(next(iter(quick.refine["cell"].values()))) == 3 == quick.repeats
+    assert with_chart(slab(), quick=True).chart.repeats == 2
 
 
 def test_the_command_says_the_answer_and_draws(tmp_path, capsys):

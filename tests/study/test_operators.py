@@ -5,6 +5,7 @@ import pytest
 
 from mpm.integrate.heat_chebyshev import stages
 from mpm.integrate.timestep import CONDUCTION, SUBSTEPS, WAVE
+from mpm.study import affine
 from mpm.study.coupled import last_stable, radius, step
 from mpm.study.operators import METHODS, Cloud, random_cloud, regular, search, stabilised, substeps
 
@@ -81,3 +82,21 @@ def test_coupling_takes_the_adiabatic_wave_and_fails_with_the_old_velocity():
             assert last_stable(one, method, "mls", coupling, old=False) == pytest.approx(expected, rel=0.01)
     assert last_stable(one, "APIC", "mls", 0.1, old=True) == pytest.approx(0.26, abs=0.01)
     assert all(radius(step(one, "FLIP", "mls", co, 0.1, old=True)) > 1 + 1e-7 for co in (0.01, 0.03, 0.1, 0.3, 1.0))
+
+
+@pytest.mark.parametrize("D", [1, 2, 3])
+def test_affine_flip_whole_step(D):
+    """With blend 1 it is APIC, and begins to grow where APIC does. With 0.02 heat is safe; motion is in 1-D, and where it grows it does so slowly."""
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        cloud, lam, mu = random_cloud(rng, D), 0.2, 0.4
+        for gradient in ("mls", "bspline"):
+            limit = cloud.mechanics("APIC", gradient, lam, mu) / np.sqrt(D * lam + 2 * mu)
+            assert radius(affine.mechanics(cloud, gradient, lam, mu, 0.99 * limit, 1.0)) <= 1 + 1e-6
+            assert radius(affine.mechanics(cloud, gradient, lam, mu, 1.01 * limit, 1.0)) > 1 + 1e-6
+        warm = cloud.heat("APIC")
+        assert radius(affine.heat(cloud, 0.99 * warm, 1.0)) <= 1 + 1e-9 < radius(affine.heat(cloud, 1.01 * warm, 1.0))
+    found = affine.search(D, 150, seed=7)
+    assert found["heat"][1] == 0.0
+    for gradient in ("mls", "bspline"):
+        assert found[f"mechanics {gradient}"][0] < (1e-9 if D == 1 else 0.02)
