@@ -79,11 +79,13 @@ def front(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> list[floa
     rows = np.flatnonzero(data["front"].values.astype(bool) & (error > 0))
     rows = rows[np.argsort(least[rows])]
     ax.plot(least[rows], error[rows], color=INK, lw=3.2, alpha=0.85, zorder=2, solid_joinstyle="round")
-    for tolerance in TOLERANCES:
+    own = float(data["relative_error"].attrs.get("reference_error", 0.0))
+    told = [tolerance for tolerance in TOLERANCES if own <= tolerance]  # below the reference's own error nothing is cheapest
+    for tolerance in told:
         fit = rows[error[rows] <= tolerance]
         if len(fit):
             ax.plot(least[fit[0]], error[fit[0]], "o", ms=13, mfc="none", mec=INK, mew=1.3, zorder=5)
-    return [tolerance for tolerance in TOLERANCES if (error[rows] <= tolerance).any()]
+    return [tolerance for tolerance in told if (error[rows] <= tolerance).any()]
 
 
 def rival(ax: Any, data: Any) -> list[Any]:

@@ -7,8 +7,8 @@ Particles carry theta and its slope c, or v, C and the strain; with P and Q the 
     mechanics   the same for every component of v, with dt f/m in place of -dt A t;  eps' = eps + dt sym grad v+
 
 Steps are those of mpm.integrate.timestep: CONDUCTION R0 alpha h^2/kappa, WAVE h sqrt(R0/(D lam + 2 mu)). blend = 1 is APIC, with its critical steps.
-Fails when: in the plane and in space a few particles of unequal (cut) volumes in one cell grow slowly at any step, as what they keep and what the grid makes
-of their slopes part: the step is not what is at fault (docs/stability.md); the guard on energy ends such a run.
+Fails when: a few particles of unequal (cut) volumes share a cell: their motion grows slowly at any step, as what they keep and what the grid makes of their
+slopes part (with mls not in 1-D). The step is not at fault (docs/stability.md); the guard on energy ends such a run.
 """
 
 import argparse

@@ -126,7 +126,8 @@ def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[d
     names = [name(case.values) for case in plan.cases]
     variables["label"] = Array(("setting",), np.array(names, dtype=object), {"long_name": "setting in words"})
     put = variables.__setitem__
-    put("relative_error", Array(("setting",), error, {"units": "1", "long_name": about, "reference_error": reference_error(experiment, tree)}))
+    own = reference_error(experiment, tree)
+    put("relative_error", Array(("setting",), error, {"units": "1", "long_name": about, "reference_error": own}))
     if largest is not None:
         put("relative_error_max", Array(("setting",), largest, {"units": "1", "long_name": "largest error, over the same scale"}))
     for kind, data, words in (("cpu", cpu, "processor time"), ("wall", wall, "wall time")):
@@ -142,7 +143,7 @@ def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[d
     put("front", Array(("setting",), front.astype(np.int8), {"units": "1", "long_name": "1 where no other setting has less error in less time"}))
     variables |= peers(rounds, scale_of(experiment, tree))
     least_time, median = variables["cpu_min"].data, variables["cpu_median"].data
-    return variables, [sentence(cheapest(ranked, least_time, median, tolerance), names, ranked, least_time, median) for tolerance in TOLERANCES]
+    return variables, [sentence(cheapest(ranked, least_time, median, tolerance), names, ranked, least_time, median, own) for tolerance in TOLERANCES]
 
 
 def least(data: np.ndarray, how) -> np.ndarray:

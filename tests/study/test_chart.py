@@ -141,6 +141,7 @@ def test_front_and_cheapest_leave_what_overlaps_unranked():
     assert found.index == 2 and found.ties == ()
     assert cheapest(error, least, np.array([1.1, 2.2, 2.1, 1.1, 9.0]), 0.05).ties == (1,)
     assert cheapest(error, least, median, 1e-9).index is None
+    assert "cannot be told" in sentence(cheapest(error, least, median, 0.05), list("abcde"), error, least, median, 0.06)
     assert "not ranked: b" in sentence(cheapest(error, least, np.full(5, 2.1), 0.05), list("abcde"), error, least, median)
 
 
