@@ -116,7 +116,7 @@ def offer(experiment: Any, tolerance: float, heard: Callable[[str], None] = sile
         found = choose(experiment, tolerance, told=heard)
     except (NoChoice, ValueError) as why:
         return {"tolerance": tolerance, "none": str(why)}
-    return {"tolerance": tolerance, **asdict(found)}
+    return {"tolerance": tolerance, "swept": experiment.sweep is not None, **asdict(found)}
 
 
 def told(found: dict[str, Any]) -> str:
@@ -128,4 +128,7 @@ def told(found: dict[str, Any]) -> str:
     pilots = ", ".join(f"{label(pilot['cell'])} m {100 * pilot['error']:.2g} %" for pilot in known)
     expected = f"error {100 * found['predicted']:.2g} % expected, {found['seconds']:.2g} s a run"
     lines = [f"settings  for {100 * found['tolerance']:g} %: {found['method']}, {expected}"]
-    return "\n".join([*lines, f"          {chosen}", f"          method from the charts of {', '.join(found['charts'])}; cell from pilots: {pilots}"])
+    lines += [f"          {chosen}", f"          method from the charts of {', '.join(found['charts'])}; cell from pilots: {pilots}"]
+    if found["swept"]:
+        lines.append("          for the config's own values, not for each point of its sweep: --set PATH=VALUE plans for the hardest of them")
+    return "\n".join(lines)

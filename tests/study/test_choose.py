@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.study.choose import choose, numerical, physics, rank, reach
+from mpm.study.choose import choose, numerical, offer, physics, rank, reach, told
 from mpm.study.figures import STUDIES
 from mpm.study.pilots import NoChoice, grids, left, refine, settled
 from mpm.study.promises import PROBLEMS, rivals
@@ -111,6 +111,13 @@ def test_pilots_are_told_of_and_go_on_where_an_error_falls_slowly(monkeypatch):
     monkeypatch.setattr(Gauge, "expected", lambda self, cell, pilots: 0.1 if len(pilots) < 2 else 400.0)
     with pytest.raises(NoChoice, match=r"order 0\.23 only, from 4\.5 % to 4\.1 %, and the next, of cells of 0\.4 m, would take 4e\+02 s: pilots may"):
         choose(mpm.load(SLAB), 0.01, [row("implicit", 1e-5, 1e-3, **IMPLICIT)])
+
+
+def test_a_choice_for_a_sweep_says_whose_it_is():
+    """With beta from 1 to infinity the slab's own 10 W/m2/K decides, and that is told."""
+    swept = offer(mpm.load(SLAB | {"sweep": {"axes": {"beta": [1, float("inf")]}}}), 0.03)
+    assert "--set 'grid.cell=" in told(swept) and "not for each point of its sweep" in told(swept)
+    assert "sweep" not in told(offer(mpm.load(SLAB), 0.03))
 
 
 def test_what_cannot_be_chosen_is_said():
