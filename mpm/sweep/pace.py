@@ -2,6 +2,8 @@
 
 A batch is sized to last BATCH seconds at the pace seen so far. It grows by GROW at most from one to the next, since points differ, and is cut
 so that the last batches end together. A batch that dies or overruns is handed out again point by point, so that only the point at fault pays.
+The material points of a batch are one compiled call (mpm.runner.run_points), those of a worker are not: a kill would cost them all, and there is nothing to
+gain. 12 800 points of configs/scenes/dough_rheometer.yaml take 10.1 s of processor in one call and 10.3 s in 100 calls of 128.
 """
 
 import math

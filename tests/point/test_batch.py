@@ -39,6 +39,16 @@ def test_batch_equals_single_bitwise(mixed):
     assert len({run.outcome.kind for run in batch(mixed)}) == 2
 
 
+def test_points_of_one_kind_are_one_compiled_call(point, monkeypatch):
+    """Whatever their values and lengths."""
+    import mpm.point.run as room
+
+    made = [point(PULL, flow={"eta": 1e3 + k, "p0": 0.5 + 1e-3 * k}, every=0.1 if k % 2 else 0.05) for k in range(150)]
+    calls, whole = [], room.advance
+    monkeypatch.setattr(room, "advance", lambda *arguments: calls.append(whole(*arguments)))
+    assert all(run.outcome.ok for run in batch(made)) and len(calls) == 1
+
+
 def test_points_of_a_sweep_are_the_runs_of_one_point(mixed):
     """What the runner adds to a Run is the same, too."""
     from mpm.runner import run_point, run_points
