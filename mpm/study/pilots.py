@@ -3,7 +3,8 @@
     refine(experiment, settings, tolerance, told) -> (cell, predicted error, seconds, pilots)      or NoChoice, which says why
 
 Each has PILOT times the cells of the last, until one keeps the tolerance, or until the error is within REACH of it, falls with an order p of ORDERS[0] or
-more, and the cell which that asks for, n* = n (e/(MARGIN tol))^(1/p), is farther than the next two pilots (three, where errors are estimated).
+more, and the cell which that asks for, n* = n (e/(MARGIN tol))^(1/p), is farther than the next two pilots (three, where errors are estimated). Where a
+known error has fallen by the same p twice, it is SURE in place of MARGIN, and a cell coarser than the next pilot's is taken at once.
 No pilot starts that would end, by the time of the last one, more than MOST_SECONDS after the first of any method began.
 Error     as `mpm chart` has it: against `exact:`; without one, of the observables that the config lists (probes, time_to, ...) by how they change between
           pilots: |f - f_k|/((h_k/h)^p - 1), the larger for the two before; p = 1, or up to 2 where two estimates of it agree, and SAFETY times that
@@ -25,11 +26,12 @@ from mpm.reduce.gap import STEADY
 from mpm.study.richardson import SAFETY
 from mpm.study.richardson import order as fitted
 
-MARGIN, REACH, PILOT = 0.7, 6.0, 1.5
+MARGIN, SURE, REACH, PILOT = 0.7, 0.9, 6.0, 1.5
 NEAR, FAR = 2, 3  # pilots left out for a guess at the least: where errors are known, and where they are estimated
 MOST_PILOTS, MOST_SECONDS = 10, 120.0
 LONG = 1.0  # s of a pilot that is timed by the run which gives its error: shorter ones once more, warm
 ORDERS = (0.7, 4.0)
+SAME = 0.1  # orders of an error that is known which differ by no more are one
 AGREE = 0.5  # two estimates of an order that differ by no more are believed
 
 
@@ -39,7 +41,8 @@ class NoChoice(ValueError):
 
 @dataclass(frozen=True)
 class Pilot:
-    """A run on the way: cells over the smallest extent, cell [m], error (inf: none), seconds of processor time, why it ended early, which final is worst."""
+    """A run on the way: cells over the smallest extent, cell [m], error (inf: none), seconds of processor time, why it ended early, which final is worst,
+    whether its error is known or estimated."""
 
     cells: float
     cell: float
@@ -47,6 +50,7 @@ class Pilot:
     seconds: float
     ended: str = ""
     worst: str = ""
+    exact: bool = False
 
     def said(self, first: bool) -> str:
         """In words."""
@@ -108,7 +112,8 @@ def refine(
         met = known and known[-1].error <= tolerance
         near = len(known) > 1 and known[-1].error <= REACH * tolerance and order(known) >= ORDERS[0]
         guess = PILOT ** (FAR if experiment.exact is None else NEAR)  # nearer than that the next pilots are as good as a guess
-        if met or (near and goal(known, tolerance) < known[-1].cell / guess):
+        aim = goal(known, tolerance) if near else cell
+        if met or (near and (aim < cell / guess or (sure(known) and aim > cell / PILOT))):
             return finish(experiment, settings, tolerance, available, known)
         wanted = L / cell * PILOT
     if not pilots:
@@ -146,9 +151,15 @@ def order(known: list[Pilot]) -> float:
     return math.log(known[-2].error / known[-1].error) / math.log(known[-2].cell / known[-1].cell)
 
 
+def sure(known: list[Pilot]) -> bool:
+    """Whether the error, itself known, has fallen by one order twice."""
+    return len(known) > 2 and known[-1].exact and abs(order(known) - order(known[:-1])) <= SAME
+
+
 def goal(known: list[Pilot], tolerance: float) -> float:
-    """The cell at which the error should be MARGIN of the tolerance [m]."""
-    return known[-1].cell * (MARGIN * tolerance / known[-1].error) ** (1 / min(max(order(known), ORDERS[0]), ORDERS[1]))
+    """The cell at which the error should be MARGIN of the tolerance, SURE of it where it falls by one order [m]."""
+    margin = SURE if sure(known) else MARGIN
+    return known[-1].cell * (margin * tolerance / known[-1].error) ** (1 / min(max(order(known), ORDERS[0]), ORDERS[1]))
 
 
 def ratio(experiment: Any, settings: dict[str, Any], cell: float, other: float) -> float:
@@ -206,7 +217,7 @@ class Gauge:
             began = time.process_time()
             run_point(point, compare=False)
             seconds = min(seconds, time.process_time() - began)
-        return Pilot(cells, cell, self.error(run, cell), seconds, worst=self.worst)
+        return Pilot(cells, cell, self.error(run, cell), seconds, worst=self.worst, exact=self.experiment.exact is not None)
 
     def error(self, run: Any, cell: float = math.nan) -> float:
         """Against the exact solution; else by the pilots before, of which the cell is then needed."""

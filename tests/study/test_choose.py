@@ -97,6 +97,17 @@ def test_a_change_that_is_small_by_chance_is_not_taken_for_the_error():
     assert left(cells, smooth) == pytest.approx(1.25 * 5 * cells[-1] ** 2)
 
 
+def test_an_order_that_holds_is_trusted_more():
+    """Twice the same order of a known error: nine tenths of the tolerance are aimed at, else seven; estimated errors are never that sure."""
+    from mpm.study.pilots import MARGIN, SURE, Pilot, goal, sure
+
+    pilots = [Pilot(1 / h, h, 4 * h**2, 0.1, exact=True) for h in (0.3, 0.2, 0.1)]
+    assert sure(pilots) and goal(pilots, 0.01) == pytest.approx(0.1 * (SURE * 0.01 / 0.04) ** 0.5)
+    uneven = [*pilots[:2], Pilot(10, 0.1, 0.06, 0.1, exact=True)]
+    assert not sure(uneven) and not sure(pilots[:2]) and goal(pilots[:2], 0.01) == pytest.approx(0.2 * (MARGIN * 0.01 / 0.16) ** 0.5)
+    assert not sure([Pilot(1 / h, h, 4 * h**2, 0.1) for h in (0.3, 0.2, 0.1)])
+
+
 def test_pilots_are_told_of_and_go_on_where_an_error_falls_slowly(monkeypatch):
     """Errors that fall by a tenth at first, then with the cell: no guess from the slow part. A pilot that would take too long is not begun; that is said."""
     from mpm.study.pilots import Gauge, Pilot
