@@ -11,13 +11,13 @@ import math
 from mpm.scene.inventory import output_bytes, physics
 
 # Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
-LEAST = {"rigid": 1e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
+LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
-ALONE = {"step": 3e-6, "block": 60e-6, "heat": 100e-6, "output": 300e-6}  # s, whatever the number of particles
+ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
-RIGID = {"LinearSteps": 0.4e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
-SHOWN = 40e-6  # s an output of rigid bodies
+RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
+SHOWN = 20e-6  # s an output of rigid bodies
 BYTES_PARTICLE = {1: 200, 2: 376, "axisymmetric": 390, 3: 754}  # at the peak, which is where particles are cut and weighed
 BYTES_NODE = 30
 BYTES_LATER = 203_000_000  # of a moving process once its kernels are loaded, when particles take the most
