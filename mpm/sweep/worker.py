@@ -107,8 +107,15 @@ def compute(
         text = f"{variables.STATUS[variables.KILLED]}: wants more memory than is allowed or free"
         return point.Record(run_id, variables.KILLED, text, variables.MEMORY, wall_time=time.perf_counter() - began, finished=now(), **calls)
     except Exception as error:
-        text = f"{variables.STATUS[variables.FAILED]}: {type(error).__name__}: {first_line(error)}{where(error)}"
+        text = f"{variables.STATUS[variables.FAILED]}: {told(error)}"
         return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
+
+
+def told(error: Exception) -> str:
+    """What cannot be run says what to change; anything else is told with its type and place."""
+    from mpm.scene.refusal import SceneError
+
+    return first_line(error) if isinstance(error, SceneError) else f"{type(error).__name__}: {first_line(error)}{where(error)}"
 
 
 def first_line(error: BaseException) -> str:

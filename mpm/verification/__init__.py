@@ -5,6 +5,7 @@ for a moving body `exact(experiment) -> Motion` (mpm.error): its fields by mater
 To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
 """
 
+from mpm.scene.refusal import SceneError
 from mpm.verification import (
     adiabatic,
     cooks_membrane,
@@ -55,10 +56,17 @@ LOADED = ("cooks_membrane",)  # scenes that have loads of their own
 
 
 def exact_solution(experiment):
-    """The solution that the config names, or None. ValueError where the scene is not the problem."""
+    """The solution that the config names, or None. SceneError where the scene is not the problem."""
     if experiment.exact is None:
         return None
-    kind = type(experiment.exact).kind
+    try:
+        return fitting(experiment, type(experiment.exact).kind)
+    except ValueError as why:
+        raise SceneError(f"exact: {why}; take `exact` out, or make the scene its problem") from None
+
+
+def fitting(experiment, kind: str):
+    """The solution of that kind; ValueError says what of the scene does not fit it."""
     for name, material in experiment.materials.items():
         E = material.elastic.E if material.elastic is not None else None
         if E is not None and type(E).kind != "constant":

@@ -114,3 +114,20 @@ def test_errors_are_taken_where_the_body_has_gone(core):
     sections = {"grid": {"dimension": 1, "size": [3.0], "cell": 0.0625}, "bodies": body, "surfaces": air, "exact": {"robin_slab": {}}}
     rest, thrown = (mpm.run_point(core.experiment(1, unit | more, **sections)) for more in ({}, {"bodies.body.velocity": [0.9]}))
     assert thrown.outcome.ok and rest.finals["error_l2"] < 0.1 and thrown.finals["error_l2"] < 2 * rest.finals["error_l2"]
+
+
+def test_what_does_not_fit_is_told_as_advice():
+    """A plate is no cylinder: the point fails with what to change, without the name of an exception or of a file."""
+    from mpm.sweep.worker import compute
+
+    plate = {
+        "grid": {"dimension": 2, "size": [1.0, 1.0], "cell": 0.1},
+        "bodies": {"plate": {"shape": {"box": {"lower": [0.2, 0.2], "upper": [0.8, 0.8]}}, "temperature": 300.0, "material": "stuff"}},
+        "materials": {"stuff": {"density": 1000.0, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000.0}}}},
+        "surfaces": [{"of": "plate", "convection": {"beta": 10.0, "outside": 290.0}}],
+        "time": {"end": 100.0},
+        "output": {"every": 10.0},
+        "exact": "robin_cylinder",
+    }
+    record = compute("it", lambda: mpm.load(plate), "mpm.runner", None)
+    assert record.error.startswith("failed: exact: robin_cylinder needs a ball") and record.error.endswith("or make the scene its problem")
