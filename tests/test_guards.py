@@ -162,6 +162,7 @@ def test_temperatures_may_overshoot_by_what_their_transfer_does(core):
     assert Guards(build(core.experiment(1, {"method.bounds": "repair"}))).data[0].allowed == ROUNDING
 
 
+@pytest.mark.slow
 def test_sub_steps_on_hat_functions_are_not_automatic(core):
     """A particle that has just crossed a grid line: explicit sub-steps on hat functions leave the bounds of the data; `auto` does not take them."""
     bodies = {"body": {"shape": {"box": {"lower": [0.5], "upper": [4.53]}}, "temperature": core.HOT, "material": "solid"}}

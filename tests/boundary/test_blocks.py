@@ -54,7 +54,10 @@ def test_what_particles_touch_is_marked(D):
             assert blocks.sum() <= len(ends) < 0.5 * len(blocks)
 
 
-@pytest.mark.parametrize(("D", "transfer"), [(1, {"xpic": {"order": 3}}), (1, {"flip": {}}), (2, {"apic": {}})], ids=["xpic", "flip", "apic"])
+SHARP = pytest.param(1, {"xpic": {"order": 3}}, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize(("D", "transfer"), [SHARP, (1, {"flip": {}}), (2, {"apic": {}})], ids=["xpic", "flip", "apic"])
 def test_a_body_far_off_changes_no_bit(core, D, transfer):
     """A body thrown at the walls of a corner, another beside it or at the far end of the domain; nodes and marks are as clean after as before."""
     from mpm.scene.build import build

@@ -31,6 +31,7 @@ def test_thermal_shock(core, dimension, transfer, heat, beta):
         assert shock(core, dimension, transfer, heat, beta, repair=False).series["temperature_min"].min() < core.COLD - 10
 
 
+@pytest.mark.slow
 def test_heating_shock_with_latent_heat(core):
     """From below, through a bump of alpha: enthalpy is what is moved."""
     alpha = {"bump": {"base": 1.5, "heat": 60.0, "at": 450.0, "width": 2.0}}

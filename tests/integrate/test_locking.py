@@ -78,6 +78,7 @@ def sway(core, method):
     return np.max(run.series["position_mean_x"]) - 1.5, np.max(run.series["J_max"]) - np.min(run.series["J_min"])
 
 
+@pytest.mark.slow
 def test_nearly_incompressible_block(core):
     """Plain: 0.0824 with these cells, 0.1131, 0.1316 with half and a quarter. F-bar: 0.1145, 0.1361, 0.1424: what plain needs half the cell for."""
     free, spread = sway(core, {"locking": {"fbar": {"own": 0}}})
