@@ -1,6 +1,8 @@
 """Measured curves: read from a CSV beside the config, carried as numbers, compared with the run."""
 
 import math
+import os
+import re
 
 import pytest
 
@@ -55,6 +57,70 @@ def test_what_is_wrong_with_it_has_a_place(tmp_path, old, new, line, words):
     assert words in str(caught.value)
 
 
-def test_a_row_that_is_no_number_is_told(tmp_path):
-    with pytest.raises(mpm.ConfigError, match="could not convert"):
-        mpm.load(written(tmp_path, "1,warm\n"))
+HEAD = "minute,oven_degC\n"
+
+
+def curve(folder, content, config=BASE):
+    """The samples of a file with this content, bytes and all."""
+    (folder / "curve.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
+    path = folder / "scene.yaml"
+    path.write_text(config)
+    return mpm.load(path).output.measured["middle"].samples
+
+
+@pytest.mark.parametrize(
+    ("content", "line", "words"),
+    [
+        (HEAD, 2, "no rows follow the header"),
+        ("", 1, "the file is empty"),
+        (HEAD + "1,20\n2\n", 3, "1 fields under a header of 2"),
+        (HEAD + "1,20\n2,30,40\n", 3, "3 fields under a header of 2"),
+        (HEAD + "1,20\n2," + "9" * 200_000 + "\n", 3, "field larger than field limit"),
+        (HEAD + "1,20\n2,warm\n", 3, "oven_degC is no finite number: 'warm'"),
+        (HEAD + "1,20\n\n# gap\n2,\n", 5, "oven_degC is no finite number: ''"),
+        (HEAD + "nan,20\n", 2, "minute is no finite number"),
+        (HEAD + "1,1_0\n", 2, "oven_degC is no finite number"),
+        (HEAD + "-1,20\n", 2, "a time before the start of the run"),
+        (HEAD + "1,-300\n", 2, "below absolute zero"),
+        (HEAD + '1,"20\n2,30\n', 2, "this is not CSV"),
+        (HEAD.encode() + b"1,20\n2,\xff\n", 3, "not UTF-8 text (byte 0xff)"),
+        ("minute;oven_degC\n1;20\n", 1, "no such column: 'oven_degC'"),
+        ("minute,oven_degC,oven_degC\n1,20,30\n", 1, "two columns are called 'oven_degC'"),
+        (HEAD + "1,20\n" * 100_001, 100_002, "more than 100000 rows"),
+    ],
+    ids=lambda value: value if isinstance(value, str) and len(value) < 40 else "",
+)
+def test_a_bad_row_is_told_with_config_file_and_line(tmp_path, content, line, words):
+    with pytest.raises(mpm.ConfigError) as caught:
+        curve(tmp_path, content)
+    said = str(caught.value)
+    assert re.search(r"scene\.yaml:7:\d+: output\.measured\.middle", said) and f"curve.csv:{line}: " in said and words in said
+    assert len(said) < 1000
+
+
+@pytest.mark.parametrize(("unit", "seconds"), [("second", 1), ("minute", 60), ("hour", 3600)])
+def test_every_unit_of_time(tmp_path, unit, seconds):
+    samples = curve(tmp_path, f"{unit},oven_K\n2,300\n3,310\n", BASE.replace("time: minute, value: oven_degC", f"time: {unit}, value: oven_K"))
+    assert samples == ((2 * seconds, 300), (3 * seconds, 310))
+
+
+def test_a_byte_order_mark_blanks_and_other_line_ends_do_not_matter(tmp_path):
+    samples = curve(tmp_path, b"\xef\xbb\xbf# a comment\r\nminute, oven_degC\r\n1, 26.85\r\n\r\n2, 36.85\r\n")
+    assert [t for t, _ in samples] == [60, 120]
+    assert [theta for _, theta in samples] == pytest.approx([300, 310])
+
+
+def test_rows_in_any_order_of_time_are_the_same_curve(tmp_path):
+    assert curve(tmp_path, HEAD + "3,30\n1,10\n2,20\n") == curve(tmp_path, HEAD + "1,10\n2,20\n3,30\n")
+
+
+def test_what_is_no_plain_file_of_some_size_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "folder.csv").mkdir()
+    with (tmp_path / "large.csv").open("wb") as file:
+        file.truncate(65 * 2**20)
+    for name, words in (("pipe.csv", "no plain file"), ("/dev/zero", "no plain file"), ("folder.csv", "no plain file|Is a directory"), ("large.csv", "65 MiB"),
+                        ("no\\0name", "cannot read")):  # fmt: skip
+        with pytest.raises(mpm.ConfigError, match=words) as caught:
+            curve(tmp_path, HEAD + "1,20\n", BASE.replace("file: curve.csv", f'file: "{name}"'))
+        assert "scene.yaml:7:" in str(caught.value)
