@@ -50,5 +50,6 @@ def internal(error: Exception, what: str) -> None:
 def leave_at_once() -> None:
     """The command was told to stop and has done what it had to: whoever tells it again finds it gone, without a word from an interpreter that is ending."""
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGINT, lambda *_: os._exit(130))
-        signal.signal(signal.SIGTERM, lambda *_: os._exit(143))
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 143)):
+            if signal.getsignal(number) != signal.SIG_IGN:
+                signal.signal(number, lambda *_, code=code: os._exit(code))

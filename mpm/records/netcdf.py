@@ -11,6 +11,7 @@ import hashlib
 import io
 import itertools
 import json
+import math
 import os
 import secrets
 import zlib
@@ -21,6 +22,8 @@ from typing import Any
 import numpy as np
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
+CHUNK = 2**20  # bytes that a chunk holds at least, where there are as many
+WHOLE = {"x", "y", "z", "r", "direction", "time"}  # dimensions that are never cut: a chunk holds whole frames and whole series
 DIGEST = 64
 TAIL = DIGEST + 18  # newline, digest, newline, CRC-32 and length of the line as 8 hex digits each
 
@@ -40,7 +43,7 @@ class Array:
 
 @dataclass
 class Group:
-    """Variables by name. Dimensions that the root has are not repeated."""
+    """Variables by name."""
 
     variables: dict[str, Array] = field(default_factory=dict)
 
@@ -65,33 +68,55 @@ def attribute(value: Any) -> Any:
 
 
 def to_bytes(groups: dict[str, Group], attrs: dict[str, Any]) -> bytes:
-    """A NetCDF-4 file; `groups` by path, "/" first."""
+    """A NetCDF-4 file; `groups` by path, "/" first. Each has dimensions of its own, so that it can be opened alone."""
     import h5netcdf
 
     buffer = io.BytesIO()
     with h5netcdf.File(buffer, "w") as file:
-        known: dict[str, int] = {}
+        for name, value in attrs.items():
+            file.attrs[name] = attribute(value)
         for path, group in groups.items():
-            target = file if path == "/" else file.create_group(path)
-            target.dimensions = {dim: size for dim, size in group.sizes().items() if dim not in known}
-            if path == "/":
-                known = group.sizes()
-                for name, value in attrs.items():
-                    file.attrs[name] = attribute(value)
+            target, lengths = file if path == "/" else file.create_group(path), chunks(group)
+            target.dimensions = group.sizes()
             for name, variable in group.variables.items():
-                put(target, name, variable)
+                put(target, name, variable, lengths)
     return buffer.getvalue()
 
 
-def put(group: Any, name: str, variable: Array) -> None:
-    """Write one variable; numbers compressed and checksummed, text and single numbers as they are."""
+def chunks(group: Group) -> dict[str, int]:
+    """Length of a chunk along each dimension, one for all variables of a group, as tools that read a part at a time want it.
+
+    A chunk of a variable holds CHUNK bytes or more, where there are as many. What has only some of the dimensions of another variable follows it.
+    """
+    sizes = group.sizes()
+    lengths = {dim: size if dim in WHOLE else 1 for dim, size in sizes.items()}
+    every = {variable.dims for variable in group.variables.values()}
+    for variable in group.variables.values():
+        if any(set(variable.dims) < set(dims) for dims in every):
+            continue
+        size = np.asarray(variable.data).itemsize * math.prod(sizes[dim] for dim in variable.dims if dim in WHOLE)
+        for dim in [dim for dim in reversed(variable.dims) if dim not in WHOLE]:
+            lengths[dim] = max(lengths[dim], cut(sizes[dim], math.ceil(CHUNK / max(1, size))))
+            size *= lengths[dim]
+    return lengths
+
+
+def cut(size: int, least: int) -> int:
+    """Length of the parts of a dimension: `least` or a little more, also of the last part."""
+    parts = (math.ceil(size / number) for number in range(size // least, 0, -1))
+    return next((length for length in parts if (size - 1) % length + 1 >= least), size)
+
+
+def put(group: Any, name: str, variable: Array, lengths: dict[str, int]) -> None:
+    """Write one variable in chunks of these lengths; numbers compressed and checksummed, text and single numbers as they are."""
     data = np.asarray(variable.data)
+    how: dict[str, Any] = {"chunks": tuple(lengths[dim] for dim in variable.dims)} if data.size and data.ndim else {}
     if data.dtype.kind in "OU":
         import h5py
 
-        target = group.create_variable(name, variable.dims, dtype=h5py.string_dtype(), data=data.astype(object))
+        target = group.create_variable(name, variable.dims, dtype=h5py.string_dtype(), data=data.astype(object), **how)
     else:
-        target = group.create_variable(name, variable.dims, data=data, **(PACKED if data.ndim else {}))
+        target = group.create_variable(name, variable.dims, data=data, **(how | PACKED if how else {}))
     for key, value in variable.attrs.items():
         target.attrs[key] = attribute(value)
 

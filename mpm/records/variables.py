@@ -85,6 +85,7 @@ TABLE = [
     # one number a point
     ("status", "", "1", POINT, "outcome of the point"),
     ("error", "", "1", POINT, "why the point is not ok"),
+    ("advice", "", "1", POINT, "what would help, where the point is not ok"),
     ("outcome", "", "1", POINT, "how the run ended"),
     ("run_id", "", "1", POINT, "hash of the point's config"),
     ("model_name", "", "1", POINT, "model: auto: what was dropped from the full model"),

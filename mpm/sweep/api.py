@@ -23,6 +23,8 @@ from mpm.sweep.report import Reporter
 from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, counts, exit_code, stale
 
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 
 def default_out(experiment: Any) -> Path:
     """`results/<config name>`."""
@@ -69,7 +71,7 @@ def execute(
         store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"), kind=kind)
         lines, damaged = store.lines(points.ids)
         for run_id in damaged:
-            reporter.note(f"{store.set_aside(run_id)}: the file was damaged and is set aside; its point runs again")
+            reporter.note(f"{store.set_aside(run_id)}: the file was damaged, or held another point, and is set aside; its point runs again")
 
         gather = Gather(store, plan, lines, reporter.note)
         supervisor = Engine(store, points, lines, options, reporter, gather)
@@ -117,8 +119,8 @@ def run_engine(supervisor: Engine, options: Options) -> None:
         supervisor.run(Serial(options.runner, supervisor.heed))
         return
     ahead = (len(supervisor.due) > 1 and options.jobs > 1) or options.timeout is not None  # compiling must not eat a point's time
-    first = supervisor.points.cases[supervisor.due.first].experiment.resolved() if ahead or options.scheduler else None
-    if options.scheduler:
+    first = supervisor.points.cases[supervisor.due.first].experiment.resolved() if ahead or options.scheduler is not None else None
+    if options.scheduler is not None:
         from mpm.sweep.cluster import Cluster
 
         out, memory = supervisor.store.out.resolve(), supervisor.room.limit
@@ -129,13 +131,16 @@ def run_engine(supervisor: Engine, options: Options) -> None:
 
 @contextlib.contextmanager
 def signals(heard: Callable[[str], None]) -> Iterator[None]:
-    """Ctrl-C and SIGTERM go to `heard` while this lasts; elsewhere than in the main thread nothing changes."""
+    """Ctrl-C, SIGTERM and SIGHUP (which is as SIGTERM, unless it is ignored, as under nohup) go to `heard` while this lasts.
+
+    Elsewhere than in the main thread nothing changes.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    signal.signal(signal.SIGINT, lambda *_: heard("interrupted"))
-    signal.signal(signal.SIGTERM, lambda *_: heard("terminated"))
+    before = {number: handler for number in STOPS if (handler := signal.getsignal(number)) != signal.SIG_IGN}
+    for number in before:
+        signal.signal(number, lambda got, _: heard("interrupted" if got == signal.SIGINT else "terminated"))
     try:
         yield
     finally:

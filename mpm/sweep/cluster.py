@@ -9,6 +9,7 @@ A worker is used once it has shown that it has the same source as the engine, an
 Nothing here listens, except a scheduler and workers that are `local` (mpm.sweep.local), on 127.0.0.1.
 """
 
+import asyncio
 import contextlib
 import functools
 import json
@@ -17,6 +18,7 @@ import math
 import queue
 import secrets
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -57,14 +59,22 @@ class Cluster:
         self.local = Local(self.distributed, jobs) if address == "local" else None
         self.address = self.local.address if self.local else address
         self.client: Any = None
-        self.connect(ANSWER)
+        try:
+            self.connect(ANSWER)
+        except BrokenWorkers as error:
+            raise Refused(f"{error}; --scheduler takes the address of one that runs, as tcp://host:8786, or local") from None
 
     def connect(self, patience: float) -> None:
-        """A client of the scheduler."""
+        """A client of the scheduler. It is asked first who it is: a client of what never answers, or is none, hangs, and speaks when Python ends."""
         try:
+            with ThreadPoolExecutor(1) as apart:  # the caller may have a loop of its own
+                who = apart.submit(asyncio.run, identity(self.distributed, self.address, patience)).result()
+            if who.get("type") != "Scheduler":
+                raise ValueError(f"that is a {who.get('type')}")
             self.client = self.distributed.Client(self.address, timeout=patience, set_as_default=False, name="mpm")
-        except (OSError, ValueError, RuntimeError) as error:
-            raise BrokenWorkers(f"no Dask scheduler answers at {self.address}: {type(error).__name__}") from None
+        except Exception as error:  # whatever Dask and its transports raise
+            why = f"{type(error).__name__}: {error}".strip(": ").splitlines()[0]
+            raise BrokenWorkers(f"no Dask scheduler answers at {self.address or 'an empty address'} ({why})") from None
         self.client.subscribe_topic(self.topic, lambda one: self.news.put(("beat", one[1] if isinstance(one, tuple) else one)))
 
     @property
@@ -95,6 +105,7 @@ class Cluster:
             self.weigh()
             if self.local.grow(self.wanted):
                 self.looked = 0.0
+            events += [Note(self.local.notes.pop()) for _ in range(len(self.local.notes))]
         if time.monotonic() - self.looked > LOOK:
             events += self.look()
         with contextlib.suppress(queue.Empty):
@@ -160,7 +171,8 @@ class Cluster:
             if worker not in there:
                 self.slots.pop(worker, None)
                 self.preparing.pop(worker, None)
-                events += [self.drop(name, f"worker {worker} is gone") for name, (at, _, _) in list(self.flights.items()) if at == worker]
+                lost = [self.drop(name, f"worker {worker} is gone") for name, (at, _, _) in list(self.flights.items()) if at == worker]
+                events += [Note(f"worker {worker} is gone{', with what it ran' if lost else ''}"), *lost]
         self.begin({worker: threads for worker, threads in there.items() if worker not in self.slots and worker not in self.refused})
         if self.slots or self.preparing:
             self.alive, self.waiting = self.looked, False
@@ -248,6 +260,13 @@ class Cluster:
                 self.client.close(timeout=0.8)
         if self.local:
             self.local.close()
+
+
+async def identity(distributed: Any, address: str, patience: float) -> dict:
+    """What a Dask server says it is."""
+    how = distributed.Security().get_connection_args("client")
+    async with distributed.rpc(address, timeout=patience, connection_args=how) as server:
+        return await asyncio.wait_for(server.identity(), patience)
 
 
 def host(worker: str) -> str:

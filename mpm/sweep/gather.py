@@ -162,7 +162,7 @@ class Gather:
 
 def main() -> None:
     """Started by `Beside` with the folder and the module path as arguments."""
-    for number in (signal.SIGINT, signal.SIGTERM):  # they reach the whole group; what to do about them is the parent's choice
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # they reach the whole group; what to do about them is the parent's choice
         signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=lambda: (sys.stdin.buffer.read(), os._exit(1)), daemon=True).start()
     from mpm.sweep.api import collect_folder

@@ -14,7 +14,8 @@ import threading
 from typing import Any
 
 from mpm.sweep.executors import BrokenWorkers
-from mpm.sweep.processes import ONE_THREAD, START_FAILURES
+from mpm.sweep.processes import ONE_THREAD, STALL, START_FAILURES
+from mpm.sweep.room import Pulse
 
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep.local import main; main()"
 QUIET = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
@@ -36,10 +37,17 @@ class Local:
         self.cluster.scheduler.http_server.stop()  # Dask opens a port for HTTP in any case
         self.address = self.cluster.scheduler_address
         self.children: list[subprocess.Popen] = []
+        self.pulses: dict[int, Pulse] = {}
+        self.notes: list[str] = []  # to be told
         self.grow(jobs)
 
     def grow(self, wanted: int) -> bool:
-        """Start workers up to the number worth having; whether any had ended."""
+        """Start workers up to the number worth having; whether any had ended. One that stands still is replaced (one that works beats now and then)."""
+        for child in self.children:
+            if child.poll() is None and self.pulses[child.pid].still(STALL):
+                child.kill()
+                child.wait()
+                self.notes.append(f"a Dask worker did nothing for {STALL:.0f} s; it is replaced")
         ended = [child for child in self.children if child.poll() is not None]
         self.failed += sum(child.returncode == 1 for child in ended)
         if self.failed >= START_FAILURES:
@@ -48,6 +56,7 @@ class Local:
         while len(self.children) < min(self.jobs, wanted):
             command = [sys.executable, "-P", "-c", START, self.address, self.folder.name, json.dumps(sys.path)]
             self.children.append(subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, env={**os.environ, **ONE_THREAD}))
+            self.pulses[self.children[-1].pid] = Pulse(self.children[-1].pid)
         return bool(ended)
 
     def kill(self, pid: int) -> None:
@@ -76,7 +85,7 @@ def main() -> None:
     import dask
     import distributed
 
-    for number in (signal.SIGINT, signal.SIGTERM):  # they reach the whole group; what to do about them is the parent's choice
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # they reach the whole group; what to do about them is the parent's choice
         signal.signal(number, signal.SIG_IGN)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
 

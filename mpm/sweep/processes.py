@@ -2,7 +2,8 @@
 
 Each is a fresh interpreter (never a fork: a fork after a threaded kernel kills the child), told by its environment to use one thread. The
 first to be ready compiles what the sweep needs; the others import meanwhile and wait, so that a cold cache is filled once. A worker that dies
-is replaced, and only its point is lost. What workers print goes to an unnamed file, quoted when one dies.
+is replaced, and only its point is lost; so is one that stands still (uses no processor time) before it has taken a point. What workers print goes to an
+unnamed file, quoted when one dies.
 """
 
 import json
@@ -18,10 +19,11 @@ from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
 from mpm.sweep.executors import BrokenWorkers, Event, Lost, Note, Task, event
-from mpm.sweep.room import resident, size
+from mpm.sweep.room import Pulse, resident, size
 
 ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")}
 START_FAILURES = 3
+STALL = 40.0  # s without any processor time, while it starts or compiles, after which a worker is replaced
 WEIGH = 0.2  # s between two looks at the workers' memory
 # with the parent's module path, so that a worker imports the same files whatever the current folder holds
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep.worker import main; main()"
@@ -42,6 +44,7 @@ class Child:
         self.task: Task | None = None
         self.why = ""  # it was killed for
         self.heavy = False  # it was killed as it took too much memory
+        self.pulse = Pulse(self.process.pid)
 
     def order(self, message: dict) -> None:
         """Send an order; a worker that is gone is noticed in `poll`."""
@@ -49,6 +52,12 @@ class Child:
             self.pipe.send_bytes(json.dumps(message).encode())
         except OSError:
             self.process.kill()
+
+    def stalled(self) -> bool:
+        """Whether it has done nothing for STALL seconds while it started or compiled; a point may wait for something."""
+        if self.state in ("idle", "busy"):
+            self.pulse.beat()
+        return self.pulse.still(STALL)
 
     def last_words(self) -> str:
         """How the process ended, and the last line it printed."""
@@ -113,6 +122,9 @@ class Processes:
         self.grow()
         self.weigh()
         events: list[Event] = []
+        for child in [child for child in self.children.values() if not child.why and child.stalled()]:
+            child.why = f"a worker did nothing for {STALL:.0f} s while it was {child.state}"
+            child.process.kill()
         for pipe in wait(list(self.children), timeout):
             child = self.children[pipe]
             try:
@@ -159,9 +171,11 @@ class Processes:
         if child.state == "starting":
             self.failed_starts += 1
             if self.failed_starts >= START_FAILURES:
-                raise BrokenWorkers(f"{START_FAILURES} workers in a row ended before they were ready; the last: {words}")
+                raise BrokenWorkers(f"{START_FAILURES} workers in a row ended before they were ready; the last: {child.why or words}")
+            if child.why:
+                return [Note(f"{child.why}; it is replaced")]
         if child.state == "warming":
-            return [Note(f"compiling ahead failed: {words}")]
+            return [Note(f"compiling ahead failed: {child.why or words}")]
         return [Lost(child.task.id, child.why or words, child.heavy)] if child.task else []
 
     def cancel(self, task: str, why: str) -> None:

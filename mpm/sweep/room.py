@@ -5,7 +5,9 @@ Memory   a point that needs more than the limit is refused, with its estimate (m
 Disk     no point starts unless there is room for it, for those that run and for the dataset; the sweep stops when nothing runs and there is none.
 """
 
+import math
 import os
+import time
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +106,29 @@ def resident(pid: int) -> int:
         return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):
         return 0
+
+
+class Pulse:
+    """Whether a process does anything, by the processor time that it uses; where the system does not tell, it is taken to."""
+
+    def __init__(self, pid: int):
+        self.pid, self.used, self.moved = pid, 0.0, time.monotonic()
+
+    def beat(self) -> None:
+        """It may rest now."""
+        self.moved = time.monotonic()
+
+    def still(self, seconds: float) -> bool:
+        """Whether it has used no time for so long. Ask often."""
+        try:
+            fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
+            used = float(fields[11]) + float(fields[12])
+        except (OSError, ValueError, IndexError):
+            used = math.nan
+        if used != self.used:
+            self.used = used
+            self.beat()
+        return time.monotonic() - self.moved > seconds
 
 
 def size(count: float) -> str:

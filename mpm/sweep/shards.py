@@ -14,7 +14,7 @@ from mpm.records.variables import OK
 from mpm.sweep.coordinates import planned
 from mpm.sweep.over import Over
 from mpm.sweep.store import Store
-from mpm.sweep.table import Table, described
+from mpm.sweep.table import Table, described, with_axes
 
 SHARD = 2**28  # bytes of series in a shard
 
@@ -51,14 +51,14 @@ def write(store: Store, plan: Any, about: dict, laid: Table) -> list[str]:
 
 def group(laid: Table, part: Over, time: np.ndarray, rows: slice) -> Group:
     """Coordinates and series of some values along the first dimension."""
-    found = Group()
+    found, axes = Group(), {}
     for name, array in planned(laid.plan).items():
         cut = tuple(rows if dim == laid.dims[0] else slice(None) for dim in array.dims)
-        found.variables[name] = Array(array.dims, np.asarray(array.data)[cut], array.attrs)
+        axes[name] = Array(array.dims, np.asarray(array.data)[cut], array.attrs)
     found.variables["time"] = described("time", ("time",), time, standard_name="time", axis="T")
     for name, values in part.laid(time)[1].items():
         found.variables[name] = described(name, (*laid.dims, "time"), values.reshape((-1, *laid.shape[1:], len(time))))
-    return found
+    return with_axes(found, axes)
 
 
 def remove(folder: Any, first: int) -> None:

@@ -183,7 +183,7 @@ class Store:
         for run_id in found.ids if own else ():
             if run_id in own:
                 try:
-                    line = summary(self.path(run_id))
+                    line = point_line(self.path(run_id))
                 except DamagedFile:
                     damaged.append(run_id)
                     continue
@@ -199,7 +199,7 @@ class Store:
                 found[line["run_id"]] = line
         for run_id in self.own(run_ids):
             with contextlib.suppress(DamagedFile):
-                found[run_id] = summary(self.path(run_id)) or found.get(run_id)
+                found[run_id] = point_line(self.path(run_id)) or found.get(run_id)
         return [found[run_id] for run_id in run_ids if found.get(run_id)]
 
     def set_aside(self, name: str) -> Path:
@@ -242,6 +242,20 @@ class Store:
             if {name: old.get(name) for name in new if name != "versions"} == {name: new[name] for name in new if name != "versions"}:
                 return
         write_about(self.out / "experiment.json", new)
+
+
+def point_line(path: Path) -> dict | None:
+    """The summary of a point's own file; None where there is no file. DamagedFile also where it is another point's."""
+    line = summary(path)
+    if line is not None:
+        belongs(path, line.get("run_id"))
+    return line
+
+
+def belongs(path: Path, run_id: Any) -> None:
+    """DamagedFile where a point's own file holds another point, as after a copy under a wrong name."""
+    if run_id != path.stem:
+        raise DamagedFile(f"{path}: it holds the point {run_id}")
 
 
 def entries(value: Any) -> dict[str, Any] | None:

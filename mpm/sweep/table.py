@@ -17,6 +17,7 @@ from mpm.sweep.over import Over
 LIMIT = 2**31  # bytes of fields (as they lie in the points' files) that go into sweep.nc
 SERIES = 2**29  # bytes of series that do: a collect takes some two and a half times as much memory
 AXES = ("x", "r", "y", "z")
+TEXTS = ("error", "advice", "outcome")
 
 
 def described(name: str, dims: tuple[str, ...], data: Any, **more: Any) -> Array:
@@ -36,7 +37,7 @@ class Table:
         self.place: dict[str, int] = {}
         self.more: dict[str, list[int]] = {}  # further places of points that stand at several
         self.status, self.attempts = np.full(self.count, SKIPPED, np.int8), np.zeros(self.count, np.int32)
-        self.text = {name: np.full(self.count, "", object) for name in ("error", "outcome", "run_id", "file")}
+        self.text = {name: np.full(self.count, "", object) for name in (*TEXTS, "run_id", "file")}
         self.numbers = {name: np.full(self.count, np.nan) for name in ("steps", "wall_time")}
         self.finals: dict[str, np.ndarray] = {}
         self.model: np.ndarray | None = None  # which model answered each point, where the config left it open
@@ -78,7 +79,8 @@ class Table:
         """All of a record at one place."""
         ok = record.status == OK
         self.status[place], self.attempts[place] = record.status, record.attempts
-        self.text["error"][place], self.text["outcome"][place] = record.error, record.outcome
+        for name in TEXTS:
+            self.text[name][place] = getattr(record, name)
         if self.files is not None:
             self.text["file"][place] = self.files.get(record.run_id, "")
         if ok:
@@ -109,15 +111,11 @@ class Table:
     def root(self, swept: list[str]) -> Group:
         """One number a point."""
         flags = {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)}
-        columns = {"status": self.status} | {name: self.text[name] for name in ("error", "outcome", "run_id")} | self.numbers | {"attempts": self.attempts}
+        columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "run_id")} | self.numbers | {"attempts": self.attempts}
         columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
-        group = Group(planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
-        coordinates = " ".join(name for name in group.variables if name not in self.dims)
-        for name, values in columns.items():
-            group.variables[name] = described(name, self.dims, self.full(values), **(flags if name == "status" else {}))
-            if coordinates:
-                group.variables[name].attrs["coordinates"] = coordinates
-        return group
+        group = Group({name: described(name, self.dims, self.full(values)) for name, values in columns.items()})
+        group.variables["status"].attrs.update(flags)
+        return with_axes(group, planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
 
     def series(self, shards: list[str] | None = None) -> Group:
         """Observables over time; or which file holds those of each value along the first dimension."""
@@ -131,8 +129,7 @@ class Table:
         if shards:
             about = {"units": "1", "long_name": "file that holds the series of these points, beside this one"}
             group.variables["file"] = Array((self.dims[0],), np.array(shards, dtype=object), about)
-        group.variables |= self.measured()
-        return group
+        return with_axes(group, planned(self.plan), self.measured())
 
     def measured(self) -> dict[str, Array]:
         """Measured curves of the config, each over its own times."""
@@ -157,7 +154,7 @@ class Table:
             group.variables[name] = described(name, (name,), self.axes[name])
         for field, values in columns.items():
             group.variables[field] = described(field, (*self.dims, "snapshot", *names), self.full(values.astype(np.float32, copy=False)))
-        return group
+        return with_axes(group, planned(self.plan))
 
     def particles(self) -> Group:
         """Snapshots of particles, one after another."""
@@ -184,12 +181,21 @@ class Table:
         for name, parts in rows.items():
             values = np.concatenate(parts)
             group.variables[name] = described(name, ("obs", "direction")[: values.ndim], values)
-        return group
+        return with_axes(group, planned(self.plan))
 
     def elsewhere(self) -> Group:
         """Where the fields of each point lie, as they do not fit into one array or one file."""
         about = {"units": "1", "long_name": "point file that holds the fields, beside this one"}
-        return Group({"file": Array(self.dims, self.full(self.text["file"]), about)})
+        return with_axes(Group({"file": Array(self.dims, self.full(self.text["file"]), about)}), planned(self.plan))
+
+
+def with_axes(group: Group, coordinates: dict[str, Array], more: dict[str, Array] | None = None) -> Group:
+    """The group with its coordinates before its variables, which name those that are no dimension; `more` variables have none of them."""
+    apart = {name: array.dims for name, array in coordinates.items() if array.dims != (name,)}
+    for variable in group.variables.values():
+        if named := " ".join(name for name, dims in apart.items() if set(dims) <= set(variable.dims) and name not in group.variables):
+            variable.attrs["coordinates"] = named
+    return Group(coordinates | group.variables | (more or {}))
 
 
 def same(one: dict[str, np.ndarray], two: dict[str, np.ndarray]) -> bool:

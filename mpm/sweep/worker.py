@@ -210,7 +210,7 @@ def fence(memory: float) -> None:
 
 def main() -> None:
     """Started by `processes.Child` with the socket's descriptor, the runner's name, the module path and the memory limit as arguments."""
-    for number in (signal.SIGINT, signal.SIGTERM):  # they reach the whole group; what to do about them is the parent's choice
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # they reach the whole group; what to do about them is the parent's choice
         signal.signal(number, signal.SIG_IGN)
     fence(float(sys.argv[4]))
     worker = Worker(int(sys.argv[1]), sys.argv[2])

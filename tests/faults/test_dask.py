@@ -27,7 +27,9 @@ def test_a_killed_worker_costs_what_it_ran(tmp_path, marks, dask):
     data = config([*TINY, *LONG[:2]])
     go(data, tmp_path / "own", jobs=2)
     before = len(marks())
-    result = go(data, tmp_path / "dask", jobs=2, reporter=After(60, lambda: kill(workers[0])), scheduler=dask.address)
+    told = After(60, lambda: kill(workers[0]))
+    result = go(data, tmp_path / "dask", jobs=2, reporter=told, scheduler=dask.address)
+    assert len([note for note in told.notes if note.startswith("worker tcp://127.0.0.1:") and " is gone" in note]) == 1
     assert result.exit_code == 0 and len([row for row in marks()[before:] if row[0] == "run"]) <= 62 + 2
     assert compare(tmp_path / "dask", tmp_path / "own") == []
 

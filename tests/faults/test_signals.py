@@ -1,4 +1,4 @@
-"""R7: Ctrl-C and SIGTERM leave within two seconds, a second signal at once, and nothing outlives a parent that was killed; on own workers and on Dask's."""
+"""R7: Ctrl-C, SIGTERM and SIGHUP leave in two seconds, a second signal at once; nothing outlives a killed parent; on own workers and on Dask's."""
 
 import os
 import signal
@@ -11,7 +11,7 @@ import fake_runner as fake
 import pytest
 from scenes import config
 
-from mpm.sweep.api import tree_of
+from mpm.sweep.api import signals, tree_of
 
 HERE = Path(__file__).parent
 PARENT = """
@@ -26,6 +26,7 @@ sys.exit(execute(load({config!r}), Path({out!r}), Options(jobs=2, runner="fake_r
 WAYS = {
     "SIGINT": ([signal.SIGINT], 130),
     "SIGTERM": ([signal.SIGTERM], 143),
+    "SIGHUP": ([signal.SIGHUP], 143),
     "SIGINT twice": ([signal.SIGINT, signal.SIGINT], 130),
     "SIGKILL": ([signal.SIGKILL], -9),
 }
@@ -73,11 +74,21 @@ def looked(out, way):
         assert tree_of(out / "sweep.nc").status.values.tolist() == [6, 6, 6] and len(list((out / "checkpoints").iterdir())) == 1
 
 
-@pytest.mark.parametrize("scheduler, way", [(None, "SIGTERM"), (None, "SIGINT twice"), (None, "SIGKILL"), ("local", "SIGINT")])
+@pytest.mark.parametrize("scheduler, way", [(None, "SIGTERM"), (None, "SIGHUP"), (None, "SIGINT twice"), (None, "SIGKILL"), ("local", "SIGINT")])
 def test_signals_stop_in_time_and_leave_no_orphan(tmp_path, marks, scheduler, way):
     ended, alone = leaving(tmp_path / "out", marks, scheduler, way)
     looked(tmp_path / "out", way)
     assert ended < 2 and alone < 2
+
+
+def test_a_signal_that_is_ignored_stays_so():
+    """As under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with signals(pytest.fail):
+            signal.raise_signal(signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from mpm.records import netcdf
-from mpm.records.netcdf import Array, DamagedFile, Group, seal, summary, to_bytes, unseal, write_whole
+from mpm.records.netcdf import CHUNK, Array, DamagedFile, Group, chunks, seal, summary, to_bytes, unseal, write_whole
 
 
 def example():
@@ -33,6 +33,21 @@ def test_disagreeing_dimensions_are_refused():
         Group({"a": Array(("x",), np.zeros(2)), "b": Array(("x",), np.zeros(3))}).sizes()
     with pytest.raises(ValueError, match="shape"):
         Group({"a": Array(("x",), np.zeros((2, 2)))}).sizes()
+
+
+def test_chunks_are_one_a_dimension_of_whole_frames_and_a_megabyte_or_more():
+    shapes = {"a": ("p", "q", "snapshot", "y", "x"), "row_size": ("p", "q", "snapshot"), "p": ("p",), "position": ("obs", "direction"), "body": ("obs",)}
+    sizes = {"p": 13, "q": 7, "snapshot": 31, "y": 100, "x": 90, "obs": 3_000_001, "direction": 3}
+    kinds = {"a": np.float32, "body": np.int64}
+    group = Group({name: Array(dims, np.broadcast_to(kinds.get(name, float)(0), [sizes[dim] for dim in dims])) for name, dims in shapes.items()})
+    lengths = chunks(group)
+    assert (lengths["y"], lengths["x"], lengths["direction"]) == (100, 90, 3) and lengths["p"] == lengths["q"] == 1
+    assert 4 * 9000 * lengths["snapshot"] >= CHUNK > 4 * 9000 * (lengths["snapshot"] - 5) and 8 * 3 * lengths["obs"] >= CHUNK
+    for name in ("snapshot", "obs"):
+        last = (sizes[name] - 1) % lengths[name] + 1
+        assert last * {"snapshot": 4 * 9000, "obs": 24}[name] >= CHUNK
+    small = chunks(Group({"status": Array(("p", "q"), np.zeros((13, 7), np.int8)), "steps": Array(("p", "q"), np.zeros((13, 7)))}))
+    assert small == {"p": 13, "q": 7}
 
 
 def test_no_flipped_bit_and_no_truncation_is_silent(tmp_path):

@@ -1,4 +1,6 @@
+import socket
 import sys
+import time
 from pathlib import Path
 
 import fake_runner as fake
@@ -67,10 +69,18 @@ def test_workers_of_other_source_are_refused(config, tmp_path, dask, monkeypatch
         go(config(TINY[:3]), tmp_path / "out", dask.address)
 
 
-def test_no_scheduler_and_no_dask_are_told(config, tmp_path, monkeypatch):
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "mute", "", "nonsense", "http://127.0.0.1:8786", "tcp://127.0.0.1:port"])
+def test_an_address_where_no_scheduler_answers_is_refused_soon(config, tmp_path, monkeypatch, address):
     monkeypatch.setattr(cluster, "ANSWER", 0.3)
-    with pytest.raises(BrokenWorkers, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
-        go(config(TINY[:3]), tmp_path / "out", "tcp://127.0.0.1:9")
+    with socket.create_server(("127.0.0.1", 0)) as mute:  # takes connections, and never says a word
+        address = f"tcp://127.0.0.1:{mute.getsockname()[1]}" if address == "mute" else address
+        began = time.monotonic()
+        with pytest.raises(Refused, match=rf"^no Dask scheduler answers at {address or 'an empty address'} .*--scheduler takes") as refused:
+            go(config(TINY[:3]), tmp_path / "out", address)
+        assert time.monotonic() - began < 20 and "\n" not in str(refused.value)
+
+
+def test_no_dask_is_told(config, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(Refused, match=r"pip install 'mpm\[cluster\]'"):
         go(config(TINY[:3]), tmp_path / "out", "local")

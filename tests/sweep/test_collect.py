@@ -3,6 +3,7 @@ import pytest
 import xarray as xr
 
 from mpm.config import load
+from mpm.outcome import INVERTED, outcome
 from mpm.records.point import Record
 from mpm.sweep import shards, table
 from mpm.sweep.api import collect_folder, execute, run_one, tree_of
@@ -99,6 +100,43 @@ def test_zip_sample_points_and_where(config, tmp_path):
     with xr.open_dataset(tmp_path / "sobol" / "sweep.nc") as data:
         assert data.temperature_mean.dims == ("sample",) and data.kappa.dims == ("sample",) and "kappa" in data.coords
         np.testing.assert_allclose(data.temperature_mean, 300 + data.kappa)
+
+
+SWEEPS = [
+    {"axes": {"kappa": [0.2, 17.0, 0.5], "alpha": [1000, 2000]}},
+    {"sample": {"sobol": {"count": 4, "seed": 1, "ranges": {"kappa": [0.1, 1.0]}}}},
+    {"zip": [{"kappa": [0.2, 0.3], "density": [900, 950]}], "axes": {"alpha": [1000, 2000]}},
+]
+
+
+@pytest.mark.parametrize("sweep", SWEEPS)
+def test_a_group_opened_alone_has_its_axes(config, tmp_path, sweep):
+    go(config([1], sweep=sweep, output=SNAPSHOTS), tmp_path)
+    root, tree = xr.load_dataset(tmp_path / "sweep.nc"), tree_of(tmp_path / "sweep.nc")
+    swept = {name for name, variable in root.coords.items() if variable.dims}
+    for name in ("series", "grid", "particles"):
+        alone = xr.load_dataset(tmp_path / "sweep.nc", group=name)
+        assert swept <= {*alone.coords} and all(alone.variables[axis].identical(root.variables[axis]) for axis in swept)
+        assert all(variable.attrs["units"] and variable.attrs["long_name"] for variable in alone.variables.values())
+        assert {*tree[name].to_dataset().data_vars} == {*alone.data_vars} and not swept & {*alone.data_vars}
+
+
+@pytest.mark.parametrize("sweep", SWEEPS)
+def test_a_dataset_can_be_read_in_chunks(config, tmp_path, monkeypatch, sweep):
+    """One chunking a group, or xarray refuses to say what it is; small chunks here, so that there are several."""
+    monkeypatch.setattr("mpm.records.netcdf.CHUNK", 50)
+    go(config([1], sweep=sweep, output=SNAPSHOTS), tmp_path)
+    whole = tree_of(tmp_path / "sweep.nc")
+    with xr.open_datatree(tmp_path / "sweep.nc", chunks={}) as tree:
+        assert all(node.to_dataset().chunks is not None for node in tree.subtree)
+        assert tree["grid"].to_dataset().chunks["x"] == (5,) and len(tree["grid"].to_dataset().chunks["snapshot"]) > 1
+        assert tree.identical(whole)
+
+
+def test_advice_is_in_the_dataset(config, tmp_path):
+    go(config([0.2, 17.0]), tmp_path)
+    advice = xr.load_dataset(tmp_path / "sweep.nc").advice
+    assert advice.dims == ("kappa",) and advice.values[0] == "" and advice.values[1] == outcome(INVERTED).advice != ""
 
 
 def test_half_done_is_a_valid_file_and_collect_finds_what_is_there(config, tmp_path):

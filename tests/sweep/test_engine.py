@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from mpm.config import load
-from mpm.sweep.api import execute, sweep, tree_of
+from mpm.sweep import processes
+from mpm.sweep.api import collect_folder, execute, sweep, tree_of
 from mpm.sweep.cases import plan
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
@@ -109,6 +110,27 @@ def test_all_failing_is_four_and_fail_fast_leaves_the_rest_pending(config, tmp_p
     assert fast.exit_code == 3 and fast.counts["pending"] == 2
     assert tree_of(tmp_path / "fast" / "sweep.nc").status.values.tolist() == [4, 6, 6]
     assert go(config([fake.DIVERGES, 0.2, 0.5]), tmp_path / "fast").counts["pending"] == 0
+
+
+def test_a_worker_that_stands_still_while_it_starts_is_replaced_and_told(config, tmp_path, marks, monkeypatch):
+    assert processes.STALL < 60
+    monkeypatch.setattr(processes, "STALL", 1.5)
+    ears, options = Ears(), Options(jobs=1, runner="stalling_runner")
+    result = execute(load(config([0.2])), tmp_path / "out", options, ears)
+    assert result.exit_code == 0 and "a worker did nothing for 2 s while it was starting; it is replaced" in ears.told
+
+
+def test_a_file_under_the_name_of_another_point_is_found_at_load(config, tmp_path, marks):
+    go(config([0.2, 0.5]), tmp_path / "out")
+    one, two = sorted((tmp_path / "out").glob("points/*/*.nc"))
+    two.write_bytes(one.read_bytes())
+    (tmp_path / "out" / "sweep.nc").unlink()
+    collect_folder(tmp_path / "out")
+    found = tree_of(tmp_path / "out" / "sweep.nc")
+    assert sorted(found.status.values.tolist()) == [0, 6]
+    again = go(config([0.2, 0.5]), tmp_path / "out")
+    assert again.ran == 1 and two.with_suffix(".damaged").exists()
+    assert tree_of(tmp_path / "out" / "sweep.nc").temperature_mean.values.tolist() == [300.2, 300.5]
 
 
 def test_a_worker_that_dies_costs_its_point(config, tmp_path, marks):
