@@ -89,8 +89,9 @@ def by_nodes(cut, h: float):
 
     Half-way between two nodes it is always the upper one, whatever round-off says.
     """
-    nearest = np.floor(cut.centroid / h + 0.5 + 1e-9)
-    order = np.lexsort(nearest.T[::-1])
+    nearest = np.floor(cut.centroid / h + 0.5 + 1e-9).astype(np.int64)
+    low, high = nearest.min(axis=0), nearest.max(axis=0)
+    order = np.argsort(np.ravel_multi_index(tuple((nearest - low).T), high - low + 1), kind="stable")
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
     return replace(cut, volume=cut.volume[order], centroid=cut.centroid[order], cell=cut.cell[order], owner=back[cut.owner])

@@ -1,7 +1,7 @@
-"""Exact quadrature of a region cut by a grid, and one particle a cut cell.
+"""Exact quadrature of a region cut by a grid.
 
 A plane region is bounded by `Segment`s and `Arc`s, run so that the inside is on the left. Each is split where it crosses a
-grid line, and over a cut cell the divergence theorem turns the area integral of f into strips between the boundary and one edge of the cell,
+grid line (mpm.scene.trace), and over a cut cell the divergence theorem turns the area integral of f into strips between the boundary and one edge of the cell,
 
     int_cell f dA = sum_pieces int (int_ref^y f dy') n_y ds + int_(opposite edge, inside) (int_ref^opposite f dy') dx ,
 
@@ -9,10 +9,15 @@ Gauss points along the piece times Gauss points along the strip. `ref` is the bo
 with one smooth piece in the cell all weights are positive; with several some may be negative, and sums stay exact.
 Order p is exact for monomials x^a y^b, a, b <= p (and one more power of x, the r of axisymmetric bodies) on straight sides; on arcs
 (45 degrees at most each) order 4 leaves 5e-10 with one cell a radius, 1e-14 with four. Fails when a feature is thinner than 1e-11 of a cell: it is not seen.
+
+Points come in rows of one cell (`Batch`, `Skin`), and cells without surface by their number alone (`Cut.whole`), so that sums over cells
+(mpm.scene.contents) need no point of them; `flat` makes a plain quadrature.
 """
 
 import functools
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,19 +65,33 @@ class Surface:
     side: np.ndarray
 
 
-@dataclass(frozen=True)
-class CutCells:
-    """One particle a cell: volume (P,), centroid (P, d), flat cell index (P,); and pieces of surface, one a smooth side within a particle:
-    owner (S,) is its particle, area (S,), centroid point (S, d), mean outward unit normal (S, d), side (S,)."""
+class Batch(NamedTuple):
+    """Points of volume: x (A, q, d), w (A, q), all of a row in one cell (A,)."""
 
-    volume: np.ndarray
-    centroid: np.ndarray
+    x: np.ndarray
+    w: np.ndarray
     cell: np.ndarray
-    owner: np.ndarray = field(repr=False)
-    area: np.ndarray = field(repr=False)
-    point: np.ndarray = field(repr=False)
-    normal: np.ndarray = field(repr=False)
-    side: np.ndarray = field(repr=False)
+
+
+class Skin(NamedTuple):
+    """Points of surface: x (A, q, d), w (A, q), normal (A, q, d), all of a row in one cell (A,) and on one side (A,)."""
+
+    x: np.ndarray
+    w: np.ndarray
+    normal: np.ndarray
+    cell: np.ndarray
+    side: np.ndarray
+
+
+class Cut(NamedTuple):
+    """Of a body, or of a part of it: cells that it fills (W,), points of volume in others, points of surface."""
+
+    whole: np.ndarray
+    volume: tuple[Batch, ...] = ()
+    surface: tuple[Skin, ...] = ()
+
+
+NONE = np.zeros(0, dtype=np.int64)
 
 
 @functools.lru_cache(maxsize=32)
@@ -95,32 +114,45 @@ def locate(x: np.ndarray, edges: list[np.ndarray]) -> np.ndarray:
     return np.where(outside, -1, index)
 
 
-def line(lower: float, upper: float, edges: np.ndarray, order: int) -> tuple[Quadrature, Surface]:
+def block(lower: list[np.ndarray], size: list[np.ndarray], cell: np.ndarray, order: int) -> Batch:
+    """Gauss points of blocks with the corners `lower` and the edges `size`, an array (A,) a direction."""
+    d, (g, gw) = len(lower), gauss(order // 2 + 1)
+    local = np.stack(np.meshgrid(*[g] * d, indexing="ij"), axis=-1).reshape(-1, d)
+    weights = functools.reduce(np.multiply.outer, [gw] * d).ravel()
+    edge = np.stack(size, axis=-1)
+    return Batch(np.stack(lower, axis=-1)[:, None] + edge[:, None] * local, edge.prod(1)[:, None] * weights, cell)
+
+
+def filled(cell: np.ndarray, edges: list[np.ndarray], order: int) -> Batch:
+    """Gauss points of whole cells."""
+    index = np.unravel_index(cell, [len(e) - 1 for e in edges])
+    return block([e[i] for e, i in zip(edges, index, strict=True)], [np.diff(e)[i] for e, i in zip(edges, index, strict=True)], cell, order)
+
+
+def flat(cuts: Iterable[Cut], edges: list[np.ndarray], order: int) -> tuple[Quadrature, Surface]:
+    """The points of all cuts one after another, those of filled cells among them."""
+    d, volumes, surfaces = len(edges), [], []
+    for cut in cuts:
+        volumes += [filled(cut.whole, edges, order), *cut.volume]
+        surfaces += cut.surface
+    x, w = (np.concatenate([getattr(v, name).reshape(shape) for v in volumes]) for name, shape in (("x", (-1, d)), ("w", -1)))
+    volume = Quadrature(x, w, np.concatenate([np.repeat(v.cell, v.w.shape[1]) for v in volumes]))
+    points = [np.concatenate([getattr(s, name).reshape(shape) for s in surfaces]) for name, shape in (("x", (-1, d)), ("w", -1), ("normal", (-1, d)))]
+    homes = [np.concatenate([np.repeat(getattr(s, name), s.w.shape[1]) for s in surfaces]) for name in ("cell", "side")]
+    return volume, Surface(*points, *homes)
+
+
+def line(lower: float, upper: float, edges: np.ndarray, order: int) -> Cut:
     """The interval [lower, upper] cut by the cells of one direction."""
     tiny = EDGE * np.diff(edges).min()
     a, b = np.maximum(edges[:-1], lower), np.minimum(edges[1:], upper)
     cell = np.flatnonzero(b - a > tiny)
-    g, gw = gauss(order // 2 + 1)
-    x = a[cell, None] + (b - a)[cell, None] * g
-    w = (b - a)[cell, None] * gw
     ends = np.array([[lower], [upper]])
     normal = np.array([[-1.0], [1.0]])
     home = locate(ends - 2 * tiny * normal, [edges])
     kept = home >= 0
-    surface = Surface(ends[kept], np.ones(2)[kept], normal[kept], home[kept], np.arange(2)[kept])
-    return Quadrature(x.reshape(-1, 1), w.ravel(), np.repeat(cell, len(g))), surface
-
-
-def plane(pieces, distance, edges, order: int) -> tuple[Quadrature, Surface]:
-    """The region bounded by `pieces` cut by the cells of two directions; `distance(x) -> signed distance` tells inside from outside."""
-    X, Y = edges
-    g, gw = gauss(order + 2)
-    from mpm.scene.trace import packed, points, trace  # compiled: a process that cuts nothing (a sweep's own, `mpm plan`) does without Numba
-
-    found = trace(*packed(pieces), X, Y, g, gw, EDGE * min(np.diff(X).min(), np.diff(Y).min()))
-    x, w, cell = points(found, distance(found.asked) < 0, X, Y, *gauss(order // 2 + 1))
-    surface = (found.x.reshape(-1, 2), found.ds.ravel(), found.normal.reshape(-1, 2), np.repeat(found.cell, len(g)), np.repeat(found.side, len(g)))
-    return Quadrature(x, w, cell), Surface(*surface)
+    skin = Skin(ends[kept, None], np.ones((2, 1))[kept], normal[kept, None], home[kept], np.arange(2)[kept])
+    return Cut(NONE, (block([a[cell]], [(b - a)[cell]], cell, order),), (skin,))
 
 
 def _cross(a_x, a_w, a_cell, b_x, b_w, b_cell, columns):
@@ -140,44 +172,3 @@ def extrude(base: tuple[Quadrature, Surface], along: tuple[Quadrature, Surface],
     up = np.concatenate([np.zeros((len(area.w) * len(ends.w), 2)), np.tile(ends.normal, (len(area.w), 1))], axis=1)
     x, w, cell = (np.concatenate(pair) for pair in zip(lateral, caps, strict=True))
     return volume, Surface(x, w, np.concatenate([flat, up]), cell, sides)
-
-
-def _sums(key, n, *columns):
-    """Sums of each column (N, d) over equal keys in 0..n-1: (n, d)."""
-    return [np.stack([np.bincount(key, weights=c, minlength=n) for c in column.T], axis=-1) for column in columns]
-
-
-def particles(volume: Quadrature, surface: Surface, edges, radial: bool = False, least: float = 0.01) -> CutCells:
-    """One particle a cell (physics.md 11, item 1): centroids and volumes, pieces of surface with their centroids and mean normals.
-
-    Cells less than `least` full go to the nearest kept particle, volume, first moment and surface, so sums and first moments stay
-    exact. `radial` weighs everything with the first coordinate (per radian).
-    """
-    w = volume.w * volume.x[:, 0] if radial else volume.w
-    s = surface.w * surface.x[:, 0] if radial else surface.w
-    cell, key = np.unique(volume.cell, return_inverse=True)
-    totals, moment = _sums(key, len(cell), np.stack([w, volume.w], axis=-1), w[:, None] * volume.x)
-    plain = totals[:, 1]
-    index = np.unravel_index(cell, [len(e) - 1 for e in edges])
-    size = np.prod([np.diff(e)[i] for e, i in zip(edges, index, strict=True)], axis=0)
-    kept = plain >= least * size
-    if not kept.any():
-        kept = plain >= plain.max()
-    centre = np.stack([(e[:-1] + e[1:])[i] / 2 for e, i in zip(edges, index, strict=True)], axis=-1)
-    heir = np.arange(len(cell))
-    keepers = np.flatnonzero(kept)
-    for k in np.flatnonzero(~kept):
-        heir[k] = keepers[np.argmin(((centre[keepers] - centre[k]) ** 2).sum(-1))]
-    new = np.cumsum(kept) - 1
-    home = new[heir]
-    total, first = _sums(home, len(keepers), totals[:, :1], moment)
-
-    at = np.searchsorted(cell, surface.cell)
-    at = np.where((at < len(cell)) & (cell[np.minimum(at, len(cell) - 1)] == surface.cell), at, -1)
-    for k in np.flatnonzero(at < 0):  # a sliver without volume: nearest cell
-        at[k] = np.argmin(((centre - surface.x[k]) ** 2).sum(-1))
-    pair, piece = np.unique(np.stack([home[at], surface.side]), axis=1, return_inverse=True)
-    area, point, normal = _sums(piece.ravel(), pair.shape[1], s[:, None], s[:, None] * surface.x, s[:, None] * surface.normal)
-    some = area[:, 0] > 0
-    area, normal = area[some], normal[some] / np.linalg.norm(normal[some], axis=1, keepdims=True)
-    return CutCells(total[:, 0], first / total, cell[keepers], pair[0][some], area[:, 0], point[some] / area, normal, pair[1][some])

@@ -2,9 +2,11 @@
 
 Role   distance(x (N, d)) -> (N,) [m], negative inside;  bounds() -> (lower, upper);  moved(shift) -> the same shape elsewhere
        cut(edges, order) -> (Quadrature, Surface): exact volume and surface points, cell by cell (mpm.scene.cut)
+       contents(edges, radial) -> what each cell holds of it (mpm.scene.contents), by the cells that the surface crosses
 Space  coordinates of the scene: (x), (x, y), (r, z) or (x, y, z). Weights are plain lengths, areas, volumes: an axisymmetric caller multiplies by r,
        which also takes away the part of a boundary that lies on the axis.
-To add a shape: a frozen dataclass with `pieces` (plane) or `cut`, one line in `KINDS`; tests/scene/test_cut.py ranges over the table.
+To add a shape: a frozen dataclass with `pieces` (plane), `prism` (the same at every height) or `cuts` (any other), one line in `KINDS`;
+tests/scene/test_cut.py ranges over the table.
 """
 
 from dataclasses import dataclass, replace
@@ -12,8 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mpm.scene import cut as cutting
+from mpm.scene.contents import CutCells, particles, stacked, weigh
 from mpm.scene.cut import Segment
 from mpm.scene.sphere import ball, circle
+from mpm.scene.trace import plane
 
 Point = tuple[float, ...]
 
@@ -39,10 +43,29 @@ class Shape:
         """Boundary of a plane shape, the inside on the left."""
         raise NotImplementedError(f"{type(self).__name__} is not a plane shape")
 
+    def prism(self):
+        """(plane base, lowest, highest) of a body that is the same at every height; None for any other."""
+        return None
+
+    def cuts(self, edges, order: int):
+        """Cuts (mpm.scene.cut.Cut) that make up the shape; no prism is asked."""
+        return (plane(self.pieces(), self.distance, edges, order),)
+
     def cut(self, edges, order: int = 4):
         if len(edges) != self.dimension:
             raise ValueError(f"a shape in {self.dimension} directions, edges in {len(edges)}")
-        return cutting.plane(self.pieces(), self.distance, edges, order)
+        if (prism := self.prism()) is None:
+            return cutting.flat(self.cuts(edges, order), edges, order)
+        base, low, high = prism
+        upright = cutting.flat((cutting.line(low, high, edges[2], order),), edges[2:], order)
+        return cutting.extrude(base.cut(edges[:2], order), upright, len(edges[2]) - 1)
+
+    def contents(self, edges, radial: bool = False):
+        """Volumes and first moments, with the weight r where `radial`: of order 2."""
+        if (prism := self.prism()) is None:
+            return weigh(self.cuts(edges, 2), edges, radial)
+        base, low, high = prism
+        return stacked(base.contents(edges[:2]), weigh((cutting.line(low, high, edges[2], 2),), edges[2:]), len(edges[2]) - 1)
 
 
 @dataclass(frozen=True)
@@ -84,13 +107,11 @@ class Box(Shape):
             corners = centre[:2] + (corners - centre[:2]) @ turn.T
         return [Segment(tuple(corners[k]), tuple(corners[(k + 1) % 4]), k) for k in range(4)]
 
-    def cut(self, edges, order=4):
-        if len(self.lower) == 1:
-            return cutting.line(self.lower[0], self.upper[0], edges[0], order)
-        if len(self.lower) == 2:
-            return super().cut(edges, order)
-        base = Box(self.lower[:2], self.upper[:2], self.angle).cut(edges[:2], order)
-        return cutting.extrude(base, cutting.line(self.lower[2], self.upper[2], edges[2], order), len(edges[2]) - 1)
+    def prism(self):
+        return (Box(self.lower[:2], self.upper[:2], self.angle), self.lower[2], self.upper[2]) if len(self.lower) == 3 else None
+
+    def cuts(self, edges, order):
+        return (cutting.line(self.lower[0], self.upper[0], edges[0], order),) if len(self.lower) == 1 else super().cuts(edges, order)
 
 
 @dataclass(frozen=True)
@@ -112,10 +133,10 @@ class Ball(Shape):
     def pieces(self):
         return circle(self.centre, self.radius)
 
-    def cut(self, edges, order=4):
+    def cuts(self, edges, order):
         if len(self.centre) == 1:
-            return cutting.line(self.centre[0] - self.radius, self.centre[0] + self.radius, edges[0], order)
-        return super().cut(edges, order) if len(self.centre) == 2 else ball(self.centre, self.radius, edges, order)
+            return (cutting.line(self.centre[0] - self.radius, self.centre[0] + self.radius, edges[0], order),)
+        return super().cuts(edges, order) if len(self.centre) == 2 else ball(self.centre, self.radius, edges, order)
 
 
 @dataclass(frozen=True)
@@ -147,11 +168,8 @@ class Cylinder(Shape):
         lower, upper = self.bounds()
         return Box(_point(lower), _point(upper)).pieces()[:3]  # the fourth is the axis: no surface, and vertical, so no part in areas
 
-    def cut(self, edges, order=4):
-        if len(self.base) == 2:
-            return super().cut(edges, order)
-        base = Ball(self.base[:2], self.radius).cut(edges[:2], order)
-        return cutting.extrude(base, cutting.line(self.base[2], self.base[2] + self.height, edges[2], order), len(edges[2]) - 1)
+    def prism(self):
+        return (Ball(self.base[:2], self.radius), self.base[2], self.base[2] + self.height) if len(self.base) == 3 else None
 
 
 @dataclass(frozen=True)
@@ -237,10 +255,10 @@ def cut_quadrature(body: Shape, edges, order: int = 4):
     return body.cut([np.asarray(e, dtype=float) for e in edges], order)
 
 
-def cells(body: Shape, edges, radial: bool = False) -> cutting.CutCells:
-    """One particle a cut cell, and its pieces of surface: physics.md 11, item 1. `radial`: weighted with r, per radian."""
+def cells(body: Shape, edges, radial: bool = False) -> CutCells:
+    """One particle a cut cell, and its pieces of surface. `radial`: weighted with r, per radian."""
     edges = [np.asarray(e, dtype=float) for e in edges]
-    return cutting.particles(*body.cut(edges, 2), edges, radial)
+    return particles(body.contents(edges, radial), edges)
 
 
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), 3: ("left", "right", "front", "back", "bottom", "top")}

@@ -1,246 +1,136 @@
-"""The compiled part of mpm.scene.cut: boundaries split where they cross grid lines, and the Gauss points of what they enclose.
+"""Plane regions on a grid: their boundary split where it crosses grid lines, and the Gauss points of what it encloses (mpm.scene.cut).
 
-A piece is a row of numbers (`packed`): ARC or not, start or centre x, y, run x, y or radius, 0, first and last value of its parameter t (fraction of a
-segment, angle of an arc), outward, side. Two calls, with the shape's own `distance` between them: `trace` asks at places that tell inside from outside.
+Work goes with the cells that the boundary crosses; the others are told inside from outside in runs up a column of cells without boundary between them.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
-from mpm.jit import kernel
+from mpm.scene.cut import EDGE, Arc, Batch, Cut, Segment, Skin, block, gauss, locate
 
-ARC, X, Y, RUN_X, RUN_Y, FIRST, LAST, OUTWARD, SIDE = range(9)
 TURN = 2 * np.pi
 
 
-class Outline(NamedTuple):
-    """What `trace` found: parts of the boundary with their n Gauss points, and what the cells that they leave may hold."""
-
-    x: np.ndarray  # (A, n, 2)
-    ds: np.ndarray  # (A, n)
-    normal: np.ndarray  # (A, n, 2)
-    cell: np.ndarray  # (A,) inside the part
-    side: np.ndarray  # (A,)
-    on_line: np.ndarray  # (A,) runs along a grid line
-    up: np.ndarray  # (cells,) strips go from the bottom edge
-    whole: np.ndarray  # (W,) cells without boundary
-    spans: np.ndarray  # (S, 2) of the edge opposite to the strips
-    home: np.ndarray  # (S,) their cells
-    asked: np.ndarray  # (W + S, 2) middles
+def split(t: np.ndarray, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(piece, start, run) of the parts of each piece between its ends and those of its parameters t (P, T) that lie between them."""
+    piece, column = np.nonzero((t > first[:, None]) & (t < last[:, None]))
+    every = np.arange(len(first))
+    number, at = np.concatenate([every, piece, every]), np.concatenate([first, t[piece, column], last])
+    order = np.lexsort((at, number))
+    number, at = number[order], at[order]
+    same = number[1:] == number[:-1]
+    return number[1:][same], at[:-1][same], np.diff(at)[same]
 
 
-def packed(pieces) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of pieces (mpm.scene.cut.Segment, Arc), and the circles among them (centre, radius)."""
-    rows, circles = [], {}
+def straight(pieces: list[Segment], edges, n: int, tiny: float) -> tuple[np.ndarray, ...]:
+    """x (A, n, 2), ds (A, n), normal (A, n, 2), side (A,) of the parts of segments."""
+    start, end = (np.array([getattr(p, name) for p in pieces], dtype=float).reshape(-1, 2) for name in ("start", "end"))
+    run = end - start
+    length = np.hypot(*run.T)
+    with np.errstate(divide="ignore", invalid="ignore"):  # along a direction nothing is crossed: infinite, or no number
+        t = np.concatenate([(edges[k] - start[:, k, None]) / run[:, k, None] for k in range(2)], axis=1)
+    piece, at, dt = split(t, np.zeros(len(pieces)), np.ones(len(pieces)))
+    kept = dt * length[piece] > tiny
+    piece, at, dt = piece[kept], at[kept], dt[kept]
+    g, gw = gauss(n)
+    x = start[piece, None] + (at[:, None] + dt[:, None] * g)[..., None] * run[piece, None]
+    normal = np.stack([run[piece, 1], -run[piece, 0]], axis=-1) / length[piece, None]
+    return x, (dt * length[piece])[:, None] * gw, np.repeat(normal[:, None], n, axis=1), np.array([p.side for p in pieces], dtype=np.int64)[piece]
+
+
+def curved(pieces: list[Arc], edges, n: int, tiny: float) -> tuple[np.ndarray, ...]:
+    """As `straight`, of arcs."""
+    centre = np.array([p.centre for p in pieces], dtype=float).reshape(-1, 2)
+    radius, first, last, outward = np.array([(p.radius, p.start, p.end, p.outward) for p in pieces], dtype=float).reshape(-1, 4).T
+    with np.errstate(invalid="ignore"):  # lines beside the circle
+        a, b = np.arccos((edges[0] - centre[:, :1]) / radius[:, None]), np.arcsin((edges[1] - centre[:, 1:]) / radius[:, None])
+    t = first[:, None] + np.mod(np.concatenate([a, -a, b, np.pi - b], axis=1) - first[:, None], TURN)
+    piece, at, dt = split(t, first, last)
+    kept = dt * radius[piece] > tiny
+    piece, at, dt = piece[kept], at[kept], dt[kept]
+    g, gw = gauss(n)
+    angle = at[:, None] + dt[:, None] * g
+    ray = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    x = centre[piece, None] + radius[piece, None, None] * ray
+    return x, (dt * radius[piece])[:, None] * gw, outward[piece, None, None] * ray, np.array([p.side for p in pieces], dtype=np.int64)[piece]
+
+
+def outline(pieces, edges, n: int, tiny: float) -> tuple[Skin, np.ndarray]:
+    """The boundary split at the grid lines, and which parts run along one (A,)."""
+    kinds = [[p for p in pieces if isinstance(p, kind)] for kind in (Segment, Arc)]
+    found = zip(straight(kinds[0], edges, n, tiny), curved(kinds[1], edges, n, tiny), strict=True)
+    x, ds, normal, side = (np.concatenate(pair) for pair in found)
+    middle = x[:, n // 2]
+    cell = locate(middle - 2 * tiny * normal[:, n // 2], edges)
+    on_line = np.zeros(len(x), dtype=bool)
+    for k, e in enumerate(edges):
+        near = np.searchsorted(e, middle[:, k], side="right") - 1
+        for step in range(2):
+            on_line |= (np.abs(x[..., k] - e[np.clip(near + step, 0, len(e) - 1)][:, None]) < tiny).all(axis=1)
+    kept = cell >= 0
+    return Skin(x[kept], ds[kept], normal[kept], cell[kept], side[kept]), on_line[kept]
+
+
+def runs(cut: np.ndarray, marked: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cells (I, J) that are not cut: which begin a run up a column without boundary between its cells (R,); the run (F,) of each, in order."""
+    free = ~cut
+    begins = free.copy()
+    begins[:, 1:] &= cut[:, :-1] | marked[:, :-1] | marked[:, 1:]
+    return np.flatnonzero(begins), (np.cumsum(begins) - 1)[free.ravel()]
+
+
+def spans(pieces, y: np.ndarray, left: np.ndarray, right: np.ndarray, tiny: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(number (S,), from, to): lines y (C,) between left and right, split where the boundary crosses."""
+    ends = [left, right]
+    for cx, cy, radius in dict.fromkeys((*p.centre, p.radius) for p in pieces if isinstance(p, Arc)):
+        half = np.sqrt(np.maximum(radius**2 - (y - cy) ** 2, 0.0))
+        ends += [cx - half, cx + half]
     for p in pieces:
-        if hasattr(p, "radius"):
-            rows.append((1.0, *p.centre, p.radius, 0.0, p.start, p.end, p.outward, p.side))
-            circles[p.centre, p.radius] = (*p.centre, p.radius)
-        else:
-            rows.append((0.0, *p.start, p.end[0] - p.start[0], p.end[1] - p.start[1], 0.0, 1.0, 1.0, p.side))
-    return np.array(rows, dtype=float).reshape(-1, 9), np.array(list(circles.values()), dtype=float).reshape(-1, 3)
+        run = p.end[1] - p.start[1] if isinstance(p, Segment) else 0.0
+        if run != 0.0:
+            t = (y - p.start[1]) / run
+            ends.append(np.where((t >= 0) & (t <= 1), p.start[0] + t * (p.end[0] - p.start[0]), left))
+    cuts = np.sort(np.clip(np.stack(ends, axis=1), left[:, None], right[:, None]), axis=1)
+    number, k = np.nonzero(np.diff(cuts, axis=1) > tiny)
+    return number, cuts[number, k], cuts[number, k + 1]
 
 
-@kernel
-def last_at_most(e, x):
-    """Number of the last of rising e that is not above x; -1 where all are."""
-    low, high = -1, len(e)
-    while high - low > 1:
-        middle = (low + high) // 2
-        if e[middle] <= x:
-            low = middle
-        else:
-            high = middle
-    return low
+def plane(pieces, distance, edges, order: int) -> Cut:
+    """The region bounded by `pieces` cut by the cells of two directions; `distance(x) -> signed distance` tells inside from outside."""
+    X, Y = edges
+    columns, rows = len(X) - 1, len(Y) - 1
+    tiny = EDGE * min(np.diff(X).min(), np.diff(Y).min())
+    skin, on_line = outline(pieces, edges, order + 2, tiny)
+    rise = skin.normal[..., 1] * skin.w
+    crossing, marked = np.zeros((2, columns * rows), dtype=bool)
+    crossing[skin.cell[~on_line]] = True
+    marked[skin.cell] = True
+    up = np.bincount(skin.cell, weights=np.where(on_line, 0.0, rise.sum(1)), minlength=columns * rows) >= 0
+
+    begins, run = runs(crossing.reshape(columns, rows), marked.reshape(columns, rows))
+    i, j = begins // rows, begins % rows
+    inside = distance(np.stack([(X[i] + X[i + 1]) / 2, (Y[j] + Y[j + 1]) / 2], axis=-1)) < 0
+    whole = np.flatnonzero(~crossing)[inside[run]]
+
+    home = np.flatnonzero(crossing)
+    i, j = home // rows, home % rows
+    y = np.where(up[home], Y[j + 1], Y[j])
+    number, left, right = spans(pieces, y, X[i], X[i + 1], tiny)
+    level = y + np.where(up[home], -4, 4) * tiny  # the inner side of the edge: a boundary that runs along it is then unambiguous
+    kept = distance(np.stack([(left + right) / 2, level[number]], axis=-1)) < 0
+    number, left, right = number[kept], left[kept], right[kept]
+    low = Y[j[number]]
+    opposite = block([left, low], [right - left, Y[j[number] + 1] - low], home[number], order)
+
+    sloped = rise.any(axis=1) & ~on_line  # upright sides carry no strips
+    cell, x, rise = skin.cell[sloped], skin.x[sloped], rise[sloped]
+    ref = np.where(up[cell], Y[cell % rows], Y[cell % rows + 1])[:, None]
+    return Cut(whole, (strips(x, rise, ref, cell, order), opposite), (skin,))
 
 
-@kernel
-def insert(t, count, new):
-    """Puts a number among the first `count` of t, which rise."""
-    k = count
-    while k > 0 and t[k - 1] > new:
-        t[k] = t[k - 1]
-        k -= 1
-    t[k] = new
-
-
-@kernel
-def crossings(piece, edges, axis, t, count):
-    """Adds the parameters at which the piece crosses the lines `edges` of a direction to t, sorted; how many there are then."""
-    if piece[ARC] == 0.0:
-        if piece[RUN_X + axis] != 0.0:
-            for e in edges:
-                new = (e - piece[X + axis]) / piece[RUN_X + axis]
-                if piece[FIRST] < new < piece[LAST]:
-                    insert(t, count, new)
-                    count += 1
-        return count
-    for e in edges:
-        c = (e - piece[X + axis]) / piece[RUN_X]
-        if abs(c) <= 1.0:
-            angle = np.arccos(c) if axis == 0 else np.arcsin(c)
-            for other in range(2):
-                one = angle if other == 0 else -angle if axis == 0 else np.pi - angle
-                new = piece[FIRST] + np.mod(one - piece[FIRST], TURN)
-                if piece[FIRST] < new < piece[LAST]:
-                    insert(t, count, new)
-                    count += 1
-    return count
-
-
-@kernel
-def along(line, x, axis, tiny):
-    """Whether all points x (n, 2) lie on a grid line."""
-    for q in range(len(x)):
-        if not abs(x[q, axis] - line) < tiny:
-            return False
-    return True
-
-
-@kernel
-def parts(pieces, edges_x, edges_y, g, gw, tiny):
-    """Every piece split at the grid lines: x, ds, normal, cell, side, on_line of Outline."""
-    n, most = len(g), 2 * (len(edges_x) + len(edges_y)) + 1
-    x, ds, normal = np.empty((len(pieces) * most, n, 2)), np.empty((len(pieces) * most, n)), np.empty((len(pieces) * most, n, 2))
-    cell, side = np.empty(len(pieces) * most, dtype=np.int64), np.empty(len(pieces) * most, dtype=np.int64)
-    on_line = np.zeros(len(pieces) * most, dtype=np.bool_)
-    t = np.empty(most + 1)
-    columns, rows, found = len(edges_x) - 1, len(edges_y) - 1, 0
-    for piece in pieces:
-        arc = piece[ARC] == 1.0
-        length = piece[RUN_X] if arc else np.hypot(piece[RUN_X], piece[RUN_Y])
-        t[0] = piece[FIRST]
-        count = crossings(piece, edges_x, 0, t[1:], 0)
-        count = crossings(piece, edges_y, 1, t[1:], count)
-        t[count + 1] = piece[LAST]
-        for k in range(count + 1):
-            dt = t[k + 1] - t[k]
-            if not dt * length > tiny:
-                continue
-            for q in range(n):
-                at = t[k] + dt * g[q]
-                if arc:
-                    c, s = np.cos(at), np.sin(at)
-                    x[found, q, 0], x[found, q, 1] = piece[X] + piece[RUN_X] * c, piece[Y] + piece[RUN_X] * s
-                    normal[found, q, 0], normal[found, q, 1] = piece[OUTWARD] * c, piece[OUTWARD] * s
-                else:
-                    x[found, q, 0], x[found, q, 1] = piece[X] + at * piece[RUN_X], piece[Y] + at * piece[RUN_Y]
-                    normal[found, q, 0], normal[found, q, 1] = piece[RUN_Y] / length, -piece[RUN_X] / length
-                ds[found, q] = dt * length * gw[q]
-            middle, inward = x[found, n // 2], normal[found, n // 2]
-            i, j = last_at_most(edges_x, middle[0] - 2 * tiny * inward[0]), last_at_most(edges_y, middle[1] - 2 * tiny * inward[1])
-            if i < 0 or i >= columns or j < 0 or j >= rows:
-                continue
-            on = False
-            for axis in range(2):
-                edges = edges_x if axis == 0 else edges_y
-                near = last_at_most(edges, middle[axis])
-                for line in range(max(near, 0), min(near + 2, len(edges))):
-                    on = on or along(edges[line], x[found], axis, tiny)
-            cell[found], side[found], on_line[found] = i * rows + j, int(piece[SIDE]), on
-            found += 1
-    return x[:found], ds[:found], normal[:found], cell[:found], side[:found], on_line[:found]
-
-
-@kernel
-def edge_cuts(pieces, circles, y, left, right, cuts):
-    """Ends of the spans of the line y between left and right, split where the boundary crosses, sorted, into `cuts`; how many."""
-    cuts[0], cuts[1], count = left, right, 2
-    for circle in circles:
-        half = np.sqrt(max(circle[2] ** 2 - (y - circle[1]) ** 2, 0.0))
-        insert(cuts, count, min(max(circle[0] - half, left), right))
-        insert(cuts, count + 1, min(max(circle[0] + half, left), right))
-        count += 2
-    for p in pieces:
-        if p[ARC] == 0.0 and p[RUN_Y] != 0.0:
-            t = (y - p[Y]) / p[RUN_Y]
-            if 0.0 <= t <= 1.0:
-                insert(cuts, count, min(max(p[X] + t * p[RUN_X], left), right))
-                count += 1
-    return count
-
-
-@kernel
-def trace(pieces, circles, edges_x, edges_y, g, gw, tiny):
-    """The Outline of a region on a grid: pieces and circles from `packed`, Gauss points g, gw of a part, what is nearer than `tiny` is the same."""
-    x, ds, normal, cell, side, on_line = parts(pieces, edges_x, edges_y, g, gw, tiny)
-    columns, rows, n = len(edges_x) - 1, len(edges_y) - 1, len(g)
-    facing, cut = np.zeros(columns * rows), np.zeros(columns * rows, dtype=np.bool_)
-    for a in range(len(cell)):
-        if not on_line[a]:
-            cut[cell[a]] = True
-            for q in range(n):
-                facing[cell[a]] += normal[a, q, 1] * ds[a, q]
-    up = facing >= 0.0
-    split = np.sum(cut)
-    whole, asked = np.empty(len(cut) - split, dtype=np.int64), np.empty((len(cut) + split * (len(pieces) + 2 * len(circles) + 1), 2))
-    spans, home = np.empty((len(asked), 2)), np.empty(len(asked), dtype=np.int64)
-    cuts = np.empty(2 + 2 * len(circles) + len(pieces))
-    at = 0
-    for c in range(len(cut)):
-        if not cut[c]:
-            i, j = c // rows, c % rows
-            whole[at] = c
-            asked[at, 0], asked[at, 1] = (edges_x[i] + edges_x[i + 1]) / 2, (edges_y[j] + edges_y[j + 1]) / 2
-            at += 1
-    found = 0
-    for c in range(len(cut)):
-        if cut[c]:
-            i, j = c // rows, c % rows
-            y = edges_y[j + 1] if up[c] else edges_y[j]
-            level = y - 4 * tiny if up[c] else y + 4 * tiny  # the inner side of the edge: a boundary that runs along it is then unambiguous
-            count = edge_cuts(pieces, circles, y, edges_x[i], edges_x[i + 1], cuts)
-            for k in range(count - 1):
-                if cuts[k + 1] - cuts[k] > tiny:
-                    spans[found, 0], spans[found, 1], home[found] = cuts[k], cuts[k + 1], c
-                    asked[at + found, 0], asked[at + found, 1] = (cuts[k] + cuts[k + 1]) / 2, level
-                    found += 1
-    return Outline(x, ds, normal, cell, side, on_line, up, whole, spans[:found], home[:found], asked[: at + found])
-
-
-@kernel
-def block(x0, hx, y0, hy, cell, g, gw, x, w, home, at):
-    """Gauss points of a rectangle, from place `at` on; the next place."""
-    for a in range(len(g)):
-        for b in range(len(g)):
-            x[at, 0], x[at, 1] = x0 + hx * g[a], y0 + hy * g[b]
-            w[at], home[at] = hx * hy * (gw[a] * gw[b]), cell
-            at += 1
-    return at
-
-
-@kernel
-def points(found, inside, edges_x, edges_y, g, gw):
-    """Quadrature of the region: x (Q, 2), w (Q,), cell (Q,) over whole cells, strips from the boundary to an edge, and the rest of the opposite edge.
-
-    inside (W + S,): what the distance said of found.asked
-    """
-    rows, m, n, middle = len(edges_y) - 1, len(g), found.ds.shape[1], len(found.whole)
-    most = np.sum(inside) * m * m + len(found.cell) * n * m
-    x, w, home, at = np.empty((most, 2)), np.empty(most), np.empty(most, dtype=np.int64), 0
-    for k in range(middle):
-        if inside[k]:
-            i, j = found.whole[k] // rows, found.whole[k] % rows
-            at = block(edges_x[i], edges_x[i + 1] - edges_x[i], edges_y[j], edges_y[j + 1] - edges_y[j], found.whole[k], g, gw, x, w, home, at)
-    for a in range(len(found.cell)):
-        upright = True  # such sides carry no strips
-        for q in range(n):
-            upright = upright and found.normal[a, q, 1] * found.ds[a, q] == 0.0
-        if upright or found.on_line[a]:
-            continue
-        c = found.cell[a]
-        ref = edges_y[c % rows] if found.up[c] else edges_y[c % rows + 1]
-        for q in range(n):
-            height = found.x[a, q, 1] - ref
-            strip = found.normal[a, q, 1] * found.ds[a, q] * height
-            for r in range(m):
-                x[at, 0], x[at, 1] = found.x[a, q, 0], ref + height * g[r]
-                w[at], home[at] = strip * gw[r], c
-                at += 1
-    for s in range(len(found.home)):
-        if inside[middle + s]:
-            c = found.home[s]
-            bottom, top = edges_y[c % rows], edges_y[c % rows + 1]
-            at = block(found.spans[s, 0], found.spans[s, 1] - found.spans[s, 0], bottom, top - bottom, c, g, gw, x, w, home, at)
-    return x[:at].copy(), w[:at].copy(), home[:at].copy()
+def strips(x: np.ndarray, rise: np.ndarray, ref: np.ndarray, cell: np.ndarray, order: int) -> Batch:
+    """Gauss points between points of surface x (A, n, d) and the heights ref (A, 1) or (A, n) in the last direction; rise (A, n): the last n_k dS."""
+    g, gw = gauss(order // 2 + 1)
+    height = x[..., -1] - ref
+    points = np.repeat(x, len(g), axis=1)
+    points[..., -1] = (ref[..., None] + height[..., None] * g).reshape(points.shape[:2])
+    return Batch(points, ((rise * height)[..., None] * gw).reshape(points.shape[:2]), cell)

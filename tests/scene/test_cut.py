@@ -90,6 +90,26 @@ def test_particles_keep_volume_surface_and_first_moments(name):
     assert np.all(c.owner < len(c.volume))
 
 
+@pytest.mark.parametrize("radial", [False, True])
+@pytest.mark.parametrize("name", [*PLANE, *SOLID])
+def test_sums_are_those_of_the_quadrature(name, radial):
+    body = (PLANE | SOLID)[name][0]
+    if radial and body.dimension == 3:
+        pytest.skip("per radian in the plane only")
+    edges = grid(body.dimension, 9)
+    held, (volume, surface) = body.contents(edges, radial), cut_quadrature(body, edges, 2)
+    w, s = (q.w * q.x[:, 0] if radial else q.w for q in (volume, surface))
+    expected = np.zeros((9**body.dimension, 2 + body.dimension))
+    np.add.at(expected, volume.cell, np.column_stack([volume.w, w, w[:, None] * volume.x]))
+    found = np.zeros_like(expected)
+    found[held.cell] = np.column_stack([held.size, held.volume, held.moment])
+    np.testing.assert_allclose(found, expected, atol=1e-14)
+    expected, found = np.zeros((2, 9**body.dimension, 1 + 2 * body.dimension))
+    np.add.at(expected, surface.cell, np.column_stack([s, s[:, None] * surface.x, s[:, None] * surface.normal]))
+    np.add.at(found, held.home, np.column_stack([held.area, held.point, held.normal]))
+    np.testing.assert_allclose(found, expected, atol=1e-14)
+
+
 def test_a_corner_keeps_its_two_sides_apart():
     c = cells(Box((0.1, 0.1), (0.9, 0.9)), [np.linspace(0, 1, 5)] * 2)
     corner = np.flatnonzero(c.cell == 0)[0]
