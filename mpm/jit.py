@@ -1,7 +1,7 @@
 """How mpm compiles: `kernel` (njit with the house's flags) and `role` (a function chosen by the type of its first argument).
 
-Numba's on-disk cache does not notice that a callee in another file changed, so the cache folder is named after a hash of
-every source file of the package and of the versions that matter. It is private (0700). Everything compiled goes through here.
+Numba's on-disk cache does not notice that a callee in another file changed, so a kernel's cache is in a folder named after the versions that matter and a
+hash of every source file that the kernel can contain (mpm.fingerprint). It is private (0700). Everything compiled goes through here and mpm.linking.
 """
 
 import contextlib
@@ -15,11 +15,12 @@ from pathlib import Path
 
 import numba
 import numpy as np
-from llvmlite.binding import Linkage
 from numba import config, njit
 from numba.core.caching import IndexDataCacheFile
-from numba.core.codegen import CPUCodeLibrary
 from numba.extending import overload
+
+from mpm import linking
+from mpm.fingerprint import fingerprint
 
 # No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
 FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
@@ -30,24 +31,9 @@ FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model
 INLINE = {"forceinline": True, "_nrt": False}
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
-ABOVE_THE_KERNELS = {"config", "records", "sweep", "verification", "study", "plots", "reduce"}  # rooms that compiled code cannot reach (tests/test_layers.py)
-
-
-def source_hash(without: frozenset | set = frozenset()) -> str:
-    """Hash of every Python file of the package, less the folders named: which source made a result."""
-    digest = hashlib.sha256()
-    root = Path(__file__).parent
-    for path in sorted(root.rglob("*.py")):
-        place = path.relative_to(root)
-        if place.parts[0] not in without:
-            digest.update(str(place).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
 def cache_folder() -> Path:
     """`$MPM_CACHE_DIR`, else the user's cache folder; a private temporary folder where neither can be written."""
-    versions = f"{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}"
-    name = "numba-" + hashlib.sha256(f"{source_hash(ABOVE_THE_KERNELS)}-{versions}".encode()).hexdigest()[:16]
+    name = f"numba-{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}"
     base = os.environ.get("MPM_CACHE_DIR") or os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "mpm")
     folder = Path(base) / name
     try:
@@ -59,27 +45,8 @@ def cache_folder() -> Path:
 
 
 CACHE = cache_folder()
-config.CACHE_DIR = str(CACHE)
 
-
-def keep_own_copies() -> None:
-    """Let every compiled function keep its own copy of what it calls.
-
-    Numba leaves the copies of callees to be merged by name when code is loaded. Which of them runs, each optimised in its own surroundings, then depends on
-    what this process compiled or loaded before, and so do the last bits of a result. Internal functions are not merged.
-    """
-    merged = CPUCodeLibrary._optimize_final_module
-
-    def optimise(library):
-        for function in library._final_module.functions:
-            if not function.is_declaration and function.linkage == Linkage.linkonce_odr and function.name.startswith("_ZN3mpm"):
-                function.linkage = Linkage.internal
-        return merged(library)
-
-    CPUCodeLibrary._optimize_final_module = optimise
-
-
-keep_own_copies()
+linking.install()
 
 
 class Sealed(IndexDataCacheFile):
@@ -123,6 +90,7 @@ def kernel(function=None, *, inline=False):
     """Compile with the house's flags and cache on disk. `inline=True` for functions that a kernel calls per particle or chunk: see INLINE."""
     if function is None:
         return functools.partial(kernel, inline=inline)
+    config.CACHE_DIR = str(CACHE / fingerprint(function.__module__))
     made = njit(cache=True, **FLAGS, **(INLINE if inline else {}))(function)
     if hasattr(getattr(made, "_cache", None), "_cache_file"):  # there is none under NUMBA_DISABLE_JIT
         made._cache._cache_file.__class__ = Sealed

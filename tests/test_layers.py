@@ -14,7 +14,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "jit": 0, "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0,
+    "fingerprint": 0, "linking": 0, "jit": 0, "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "integrate": 2,
     "error": 2, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
@@ -23,7 +23,7 @@ LAYERS = {
     "study": 6, "plots": 6,
 }  # fmt: skip
 PEERS = {
-    "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
+    "jit": {"fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
@@ -79,7 +79,7 @@ def test_imports_go_down(path):
 
 @pytest.mark.parametrize("path", [path for path in MODULES if known(path) and LAYERS[room(path)] <= COMPUTING], ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_the_computing_layers_know_only_numbers(path):
-    more = {"rigid": {"scipy"}, "jit": {"llvmlite"}, "lanes": {"llvmlite"}}
+    more = {"rigid": {"scipy"}, "linking": {"llvmlite"}, "lanes": {"llvmlite"}}
     allowed = STANDARD | {"numpy", "numba", "mpm"} | more.get(room(path), set())
     foreign = {module for module, _ in imports(path) if module.split(".")[0] not in allowed}
     assert not foreign

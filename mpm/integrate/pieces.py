@@ -31,7 +31,8 @@ def _(surface, space, body):
     for s in range(S):
         p = surface.owner[s]
         area[s] = area_and_offset(space, surface.F, surface.row[p], body.particles.J[p], surface.area, surface.offset, s, one)
-        offset[:, s] = one[:, 0]
+        for k in range(D):  # a slice assignment would compile the text of its own error
+            offset[k, s] = one[k, 0]
     return surface.owner, area, offset
 
 

@@ -4,13 +4,14 @@
 """
 
 import functools
-import hashlib
 import importlib.metadata
 import os
 import platform
 import subprocess
 from datetime import UTC, datetime
 from pathlib import Path
+
+from mpm import fingerprint
 
 ROOT = Path(__file__).resolve().parents[1]
 CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "plots"}
@@ -20,12 +21,7 @@ PACKAGES = ("mpm", "numpy", "numba", "llvmlite", "scipy", "h5py", "h5netcdf", "x
 @functools.cache
 def source_hash() -> str:
     """Hash of the source that made a result (16 hex digits)."""
-    digest = hashlib.sha256()
-    for path in sorted(ROOT.rglob("*.py")):
-        place = path.relative_to(ROOT)
-        if place.parts[0] not in CANNOT_CHANGE_A_NUMBER:
-            digest.update(str(place).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
+    return fingerprint.source_hash(CANNOT_CHANGE_A_NUMBER)
 
 
 @functools.cache

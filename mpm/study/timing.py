@@ -39,9 +39,9 @@ run_point(load(json.load(sys.stdin)), compare=False)
 
 def compiled_source() -> str:
     """Hash of the rooms that are compiled: what a time depends on."""
-    from mpm.jit import ABOVE_THE_KERNELS, source_hash
+    from mpm.fingerprint import contained, digest, rooms
 
-    return source_hash(ABOVE_THE_KERNELS)
+    return digest(rooms()[name] for name in sorted(contained("simulation") | contained("rigid") | contained("point")))
 
 
 class Stopped(Exception):
