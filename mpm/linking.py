@@ -155,7 +155,7 @@ def finalize(library):
     library._raise_if_finalized()
     module = library._final_module
     called_from_python = {function.name for function in module.functions if not function.is_declaration}
-    for other in reached(library):
+    for other in sorted(reached(library), key=lambda one: one._finalized):  # of a finished one LLVM takes only what is asked for by then
         library._reload_init.update(other._reload_init)
         module.link_in(other._get_module_for_linking() if other._finalized else mergeable(other._final_module), preserve=True)
     for function in module.functions:
@@ -180,10 +180,10 @@ def reached(library) -> list:
 
 
 def mergeable(module):
-    """The module, its functions such that another module may hold them too."""
+    """The module, its functions such that another module may hold them too, and that LLVM keeps them until all is linked."""
     for function in module.functions:
-        if not function.is_declaration and function.linkage == Linkage.external:
-            function.linkage = Linkage.linkonce_odr
+        if not function.is_declaration and function.linkage in (Linkage.external, Linkage.linkonce_odr):
+            function.linkage = Linkage.weak_odr
     return module
 
 
