@@ -58,6 +58,7 @@ Tolerance = Annotated[
     float | None,
     typer.Option("--tol", metavar="TOL", parser=share, show_default=False, help="An error that would do, such as 1%: pilots are run, and a model is chosen."),
 ]
+Strict = Annotated[bool, typer.Option("--strict", help="Warnings are exit code 3.")]
 Smoke = Annotated[bool, typer.Option("--smoke", help="Coarse and short: apply the config's smoke section.")]
 Threads = Annotated[int, typer.Option("--threads", metavar="N", min=1, help="Threads of one large run; the result is the same, bit for bit, for any number.")]
 

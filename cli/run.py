@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import typer
-from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, Threads, load
+from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, Threads, load
 from mpm_cli.progress import Single
 from mpm_cli.talk import document, leave_at_once, say
 
@@ -16,13 +16,14 @@ def run(
     smoke: Smoke = False,
     max_runs: MaxRuns = 10_000,
     threads: Threads = 1,
+    strict: Strict = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Run one point to OUT/run.nc.
 
     Of a config with a sweep it is the first; --set chooses another. A run that was stopped or killed goes on from its checkpoint.
-    Exit codes: 0 ok; 2 usage or config; 4 the point failed; 130 Ctrl-C.
+    Exit codes: 0 ok; 2 usage or config; 3 warnings, with --strict; 4 the point failed; 130 Ctrl-C.
     """
     from mpm.records.checkpoint import EVERY
     from mpm.records.netcdf import seal, write_whole
@@ -47,14 +48,17 @@ def run(
     if progress.stopped and keeper.there:
         say("the same command goes on from where it stopped", as_json, quiet)
     if as_json:
-        document({"out": folder, "dataset": folder / "run.nc", **record.line, "status": STATUS[record.status], "finals": record.finals, "facts": record.facts})
+        named = {"status": STATUS[record.status], "warnings": record.warnings, "finals": record.finals, "facts": record.facts}
+        document({"out": folder, "dataset": folder / "run.nc", **record.line, **named})
     else:
         for name, value in record.finals.items() if record.status == OK else ():
             say(f"  {name} = {value:.9g}", quiet=quiet)
         if model := record.facts.get("model"):
             dropped = "; ".join(one["dropped"] for one in model["dropped"])
             say(f"  model: {model['name']}" + (f", without {dropped}" if dropped else "; nothing can be left out"), quiet=quiet)
-        for text in record.facts.get("warnings", ()):
+        if idle := record.facts.get("threads_idle"):
+            say(f"  {idle}", quiet=quiet)
+        for text in record.warnings:
             say(f"  warning: {text}", quiet=quiet)
         say(f"{folder / 'run.nc'}", quiet=quiet)
-    raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 0 if record.status == 0 else 4))
+    raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 4 if record.status != OK else 3 if strict and record.warnings else 0))

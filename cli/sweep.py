@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, amount, limit, load
+from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
 
@@ -50,13 +50,15 @@ def sweep(
     results: Annotated[str, typer.Option(metavar="wire|shared", parser=route, help=RESULTS)] = "wire",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
     smoke: Smoke = False,
+    strict: Strict = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Run every missing point and assemble OUT/sweep.nc.
 
     Points run over processes; the same command again goes on, or does nothing where all is there.
-    Exit codes: 0 all ok; 2 usage or config; 3 some points failed; 4 every point failed; 75 time budget reached; 130 Ctrl-C; 143 SIGTERM.
+    Exit codes: 0 all ok; 2 usage or config; 3 some points failed (or have warnings, with --strict); 4 every point failed; 75 time budget reached; 130 Ctrl-C;
+    143 SIGTERM.
     """
     if dry_run:
         from mpm_cli.plan import plan
@@ -73,6 +75,8 @@ def sweep(
         jobs, timeout, retries, time_budget, failures, rerun, smoke, scheduler=scheduler, shared=results == "shared", memory=memory, checkpoint=every
     )
     result = execute(experiment, out or default_out(experiment), options, reporter(as_json, quiet), max_runs)
+    if strict and result.warned and result.exit_code == 0:
+        result.exit_code = 3
     if result.hurried:
         leave_at_once()
     picture = draw(result)
@@ -116,6 +120,7 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
         "picture": picture,
         "points": sum(result.counts.values()),
         "counts": result.counts,
+        "warnings": result.warned,
         "ran": result.ran,
         "failures": failures,
         "stopped": result.stopped or None,
@@ -126,7 +131,9 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
 
 def words(result: Any, picture: Any, config: Any) -> list[str]:
     """The same for people."""
-    told = [", ".join(f"{count} {name}" for name, count in result.counts.items() if count) + f"; {result.ran} run now, {result.seconds:.1f} s"]
+    from mpm.sweep.tally import told as counts_told
+
+    told = [f"{counts_told(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
     told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None and path.exists()]
     if result.hurried and not result.collected and result.ran:
         told.append(f"there was no time to collect what ran: `mpm collect {result.out}` does, and so does the next sweep")
@@ -136,6 +143,8 @@ def words(result: Any, picture: Any, config: Any) -> list[str]:
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
     if bad:
         told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
+    if result.warned:
+        told.append(f"warnings: `mpm status {result.out}` names a point of each kind; `warnings` in the dataset says what was seen")
     if result.exit_code == 1:
         warn(f"stopped: {result.stopped}")
     return told

@@ -26,6 +26,7 @@ from mpm.materials import Hencky
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, Outcome, outcome
 from mpm.state import PAD, Axisymmetric, Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
 from mpm.transfer import Apic
+from mpm.warned import warning
 
 SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.06, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept
 GROWTH, BLIND = 0.05, 0.5  # of the largest energy so far; BLIND where no slopes of velocity tell what is stagger (all but APIC): it is up to 0.17
@@ -75,8 +76,7 @@ class Guards:
         """At an output time, with the series up to it."""
         for name, data in zip(scene.names, self.data, strict=True):
             if data.over > NOTICEABLE:
-                self.warn(name, "temperatures leave", f"the bounds of their data by up to {100 * data.over:.0f} % of the range: `method.temperature: apic`, "
-                          "or shorter heat steps")  # fmt: skip
+                self.warn(name, "temperature", f"temperatures leave the bounds of their data by up to {100 * data.over:.0f} % of the range")
         now = {name: series[name][-1] for name in ("energy_kinetic", "energy_elastic", "energy_total")}
         self.most = max(self.most, now["energy_kinetic"] + now["energy_elastic"])
         if math.isnan(self.begun):
@@ -100,16 +100,15 @@ class Guards:
             if scene.tears and two > wide:
                 return outcome(FRACTURED, time=clock.time * scene.scale, step=clock.steps, detail=f"of {name}: two empty cells in a row")
             if one > was:
-                self.warn(name, "particles are more than a cell apart", f"from t = {clock.time * scene.scale:.4g} s on, and beyond two they pull no more: "
-                          "more `method.particles`, or larger cells")  # fmt: skip
+                self.warn(name, "torn", f"particles are more than a cell apart from t = {clock.time * scene.scale:.4g} s on, and beyond two they pull no more")
         return outcome(COMPLETED)
 
-    def warn(self, name: str, what: str, more: str) -> None:
+    def warn(self, name: str, kind: str, said: str) -> None:
         """Say a thing once a body; of a thing that grows, the latest."""
-        begins = f"{name}: {what}"
-        if "apart" in what and any(text.startswith(begins) for text in self.warned):
+        begins = f"{kind}: {name}: "
+        if kind == "torn" and any(text.startswith(begins) for text in self.warned):
             return
-        self.warned = [text for text in self.warned if not text.startswith(begins)] + [f"{begins} {more}"]
+        self.warned = [text for text in self.warned if not text.startswith(begins)] + [warning(kind, f"{name}: {said}")]
 
 
 class Data:

@@ -13,6 +13,7 @@ import numpy as np
 from mpm.costs import estimate
 from mpm.integrate.order import SHARED
 from mpm.memory import Turn
+from mpm.review import review
 from mpm.scene.inventory import physics
 from mpm.state import Run
 
@@ -60,8 +61,7 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
     if threads > 1:
         run.facts["threads"] = threads if shared else 1
         if not shared:
-            said = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
-            run.facts["warnings"] = [*run.facts.get("warnings", ()), said]
+            run.facts["threads_idle"] = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
     return told(experiment, run)
 
 
@@ -75,8 +75,9 @@ def run_points(experiments) -> list[Run]:
 
 
 def told(experiment, run: Run) -> Run:
-    """The run, with its physics and how far it is from what was measured."""
+    """The run, with its physics, its warnings, and how far it is from what was measured."""
     run.facts["physics"] = physics(experiment)
+    run.facts["warnings"] = [*run.facts.get("warnings", ()), *review(experiment, run)]
     run.finals |= misfits(experiment, run)
     return run
 

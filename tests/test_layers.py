@@ -14,12 +14,12 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "fingerprint": 0, "linking": 0, "jit": 0, "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0,
+    "fingerprint": 0, "linking": 0, "jit": 0, "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "integrate": 2,
     "error": 2, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
-    "runner": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
+    "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6,
 }  # fmt: skip
 PEERS = {
@@ -27,10 +27,10 @@ PEERS = {
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
-    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce"}, "sweep": {"runner", "verification", "costs", "reduce"},
+    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"},
 }  # fmt: skip
-LEAVES = {"mpm.records.variables"}  # anyone may import it
+LEAVES = {"mpm.records.variables", "mpm.warned"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
 COMPUTING = 3  # the last layer that may know only numbers
 

@@ -10,7 +10,8 @@ Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the fi
             a sample          observables against each parameter, and rank correlations with bootstrap intervals
             one point         its series
             no point ok       words: how many points, and why
-Marks       a point that is not ok is a cross under the data, its reason in the legend; a threshold that was not reached is a triangle above it
+Marks       a point that is not ok is a cross under the data, its reason in the legend; a threshold that was not reached is a triangle above it;
+            a point with warnings is a ring, their kinds in the legend (of one point: under the title)
 Units       as stored, but degrees Celsius for temperatures (not for differences), minutes or hours for long times, millimetres for small lengths
 Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_temperature_centre(measured_time_centre)` [K], in general
             `measured_<series>` over a time of its own [s], with `units`, `long_name` and `source`, and without swept dimensions. `/` has `misfit_centre` [K]

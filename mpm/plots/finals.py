@@ -38,6 +38,7 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     shown, order = scale(values), np.argsort(x.positions, kind="stable")
     for row, colour in zip(shown, colours, strict=True):
         ax.plot(x.positions[order], row[order], "-o", color=colour, clip_on=False, zorder=3)
+    doubts = hollow(ax, view, x, lines, at, shown, colours)
     x.apply(ax)
     ax.set_ylabel(words.wrapped(view.label(name, scale.units), 40))
     wide(ax, shown, name)
@@ -45,7 +46,17 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     reasons_key = marks(ax, view, name, x, lines, at, values, colours)
     if not np.isfinite(values).any():
         ax.text(0.5, 0.5, "no number here", transform=ax.transAxes, ha="center", color=QUIET)
-    legend_below(ax, [*values_key, *([key] for key in reasons_key)])
+    legend_below(ax, [*values_key, *([key] for key in [*doubts, *reasons_key])])
+
+
+def hollow(ax: Any, view: View, x: Axis, lines: Axis | None, at: dict[str, int], shown: np.ndarray, colours: list[Any]) -> list[Any]:
+    """Points with warnings as rings, and the entry of the legend that says which warnings."""
+    warned = slab(view, view.warned, x, lines, at) & np.isfinite(shown)
+    if not warned.any():
+        return []
+    for row, here, colour in zip(shown, warned, colours, strict=True):
+        ax.plot(x.positions[here], row[here], "o", color=colour, mfc="white", mew=1.4, clip_on=False, zorder=3.5)
+    return [Line2D([], [], color=INK, marker="o", mfc="white", mew=1.4, ls="None", label=view.warnings_told())]
 
 
 def keys(ax: Any, lines: Axis, colours: list[Any]) -> list[list[Any]]:
@@ -130,6 +141,7 @@ def errors(ax: Any, view: View, x: Axis, at: dict[str, int]) -> None:
         if x.name in ("cell", "step") and (rate := slope(x.values, values)) is not None:
             said += f", order {rate:.2f}"
         handles.append(Line2D([], [], color=colour, ls=dash, marker="o", ms=4, label=said))
+    handles += hollow(ax, view, x, None, at, scale(table(view, names[0], x, None, at)), [OKABE_ITO[0]])
     x.apply(ax)
     ax.set_ylabel(words.with_units("Error against the exact solution", scale.units))
     every = np.concatenate([table(view, name, x, None, at).ravel() for name in names])

@@ -94,8 +94,11 @@ def share(axes: Any) -> None:
 
 
 def single(view: View) -> Any:
-    """Series of one point, a panel a family."""
-    return families(view, None)
+    """Series of one point, a panel a family; its warnings under them."""
+    fig = families(view, None)
+    if view.warned.any():
+        fig.text(0.01, 0.0, view.warnings_told(), color=QUIET, fontsize=9, va="bottom")
+    return fig
 
 
 def all_series(view: View) -> Any:

@@ -20,6 +20,7 @@ from mpm.plots.view import Axis, View
 FEWEST = 10
 RESAMPLES = 2000
 MOST_PARAMETERS = 6
+RING = {"color": OKABE_ITO[0], "mfc": "white", "ms": 4, "mew": 1.2, "ls": "None"}  # a point with warnings
 
 
 def scatter(view: View, most: int = 3) -> Any:
@@ -40,7 +41,9 @@ def scatter(view: View, most: int = 3) -> Any:
         scale = view.scale(name)
         for j, (axis, places) in enumerate(zip(parameters, blocks, strict=True)):
             ax = grid[i, j]
-            ax.plot(places.ravel(), scale(values).ravel(), "o", color=OKABE_ITO[0], ms=4, mew=0, alpha=0.75)
+            ax.plot(places[~view.warned], scale(values)[~view.warned], "o", color=OKABE_ITO[0], ms=4, mew=0, alpha=0.75)
+            if view.warned.any():
+                ax.plot(places[view.warned], scale(values)[view.warned], marker="o", **RING)
             crosses(ax, view, places, bad)
             dress(ax, view, axis, name, scale, values, first=j == 0, last=i == len(names) - 1)
         for ax in grid[i, 1:columns]:
@@ -98,9 +101,11 @@ def look(mark: str, text: str) -> dict[str, Any]:
 
 
 def failures(fig: Any, view: View) -> None:
-    """What the crosses mean, under the panels."""
+    """What crosses and rings mean, under the panels."""
     rows = list(view.counted_reasons().items())[: len(MARKS)]
     handles = [Line2D([], [], label=f"{text} ({words.counted(count, 'point')})", **look(mark, text)) for mark, (text, count) in zip(MARKS, rows, strict=False)]
+    if told := view.warnings_told():
+        handles.append(Line2D([], [], marker="o", label=told, **RING))
     if handles:
         fig.legend(handles=handles, loc="outside lower left", ncols=min(3, len(handles)), handlelength=1.0)
 

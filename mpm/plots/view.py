@@ -10,8 +10,9 @@ import numpy as np
 from mpm.plots import words
 from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
 from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, dataset_name, describe, threshold
+from mpm.warned import counted
 
-BOOKKEEPING = ("status", "error", "outcome", "run_id", "steps", "wall_time", "attempts")
+BOOKKEEPING = ("status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "wall_time", "attempts")
 LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
 
 
@@ -161,6 +162,19 @@ class View:
     def ok(self) -> np.ndarray:
         """Points that are ok."""
         return self.status == OK
+
+    @cached_property
+    def warned(self) -> np.ndarray:
+        """Points that are ok and have warnings."""
+        return self.ok & (self.root["warning_flags"].values > 0) if "warning_flags" in self.root else np.zeros_like(self.ok)
+
+    def warnings_told(self) -> str:
+        """`with warnings (9 points): volume 7, temperature 4`; empty where there are none."""
+        if not self.warned.any():
+            return ""
+        found = self.root["warning_flags"].values[self.warned]
+        each = {kind: int(np.count_nonzero(found & (1 << place))) for place, kind in enumerate(self.root["warning_flags"].attrs["flag_meanings"].split())}
+        return f"with warnings ({words.counted(len(found), 'point')}): {counted(each)}"
 
     @cached_property
     def reasons(self) -> np.ndarray:

@@ -3,7 +3,7 @@
 Written compactly (all series in one array: about 1 ms a point; a NetCDF file with a variable for each takes 20), because a sweep writes
 thousands and `collect` turns them into the labelled dataset. The seal's line carries what `status` needs.
 
-line    run_id, status, error, outcome, advice, steps, wall_time, attempts, source, started, finished
+line    run_id, status, error, outcome, advice, warned, steps, wall_time, attempts, source, started, finished
 file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,] [y,] x), axes/<x>, particles/<field> (obs, ...), particles/row_size (S)
         attribute `names`: JSON with the names of series and finals; `facts` and `config`: JSON
 """
@@ -18,9 +18,10 @@ import numpy as np
 
 from mpm.records.netcdf import seal, unseal
 from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
+from mpm.warned import kinds
 
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
-LINE = "run_id status error outcome advice steps wall_time attempts source started finished".split()
+LINE = "run_id status error outcome advice warned steps wall_time attempts source started finished".split()
 
 
 @dataclass
@@ -32,6 +33,7 @@ class Record:
     error: str = ""
     outcome: str = ""
     advice: str = ""
+    warned: str = ""  # kinds of `warnings`
     steps: int = 0
     wall_time: float = 0.0
     attempts: int = 1
@@ -54,6 +56,11 @@ class Record:
         """The summary that the seal carries."""
         return {name: getattr(self, name) for name in LINE}
 
+    @property
+    def warnings(self) -> list[str]:
+        """What a careful user wants to know of the run (mpm.warned)."""
+        return self.facts.get("warnings", [])
+
 
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:
     """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series, and its finals become NaN."""
@@ -70,6 +77,7 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
         error=error,
         outcome=outcome.kind,
         advice=outcome.advice if status != OK else "",
+        warned=" ".join(kinds(run.facts.get("warnings", ()))),
         steps=int(run.steps),
         wall_time=float(run.wall_time),
         times=np.asarray(run.times, dtype=float),

@@ -86,6 +86,8 @@ TABLE = [
     ("status", "", "1", POINT, "outcome of the point"),
     ("error", "", "1", POINT, "why the point is not ok"),
     ("advice", "", "1", POINT, "what would help, where the point is not ok"),
+    ("warnings", "", "1", POINT, "what a careful user wants to know of the run, one a line, each `kind: what; advice`"),
+    ("warning_flags", "", "1", POINT, "kinds of the warnings"),
     ("outcome", "", "1", POINT, "how the run ended"),
     ("run_id", "", "1", POINT, "hash of the point's config"),
     ("model_name", "", "1", POINT, "model: auto: what was dropped from the full model"),

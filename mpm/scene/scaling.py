@@ -9,11 +9,10 @@ froude    largest (S v)^2/(g H), v the fastest particle, H the extent along grav
 kinetic   largest kinetic energy over the work done: kinetic, elastic and dissipated energy together   at most 0.05
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from mpm.state import Run
+from mpm.warned import warning
 
 FROUDE, KINETIC = 0.02, 0.05
 VALUES = {"constant": ("value",), "table": ("value",), "bump": ("base", "heat"), "logistic": ("low", "high")}  # fields of a law of temperature
@@ -129,8 +128,7 @@ def physical(run: Run, experiment) -> Run:
     past = [f"{what} {found[key]:.2g} above {most:g}" for key, what, most in (("froude", "Froude number", FROUDE), ("kinetic", "kinetic share", KINETIC))
             if found.get(key, 0.0) > most]  # fmt: skip
     run.facts["time_scaling"] = {"scale": S, **found, "valid": not past}
-    if past and run.outcome.ok:
+    if past:
         said = f"time scaling by {S:g} lets inertia in: {', '.join(past)}"
-        run.outcome = replace(run.outcome, message=said, advice="lower `time.scale`")
-        run.facts["warnings"] = [*run.facts.get("warnings", ()), f"{said}: lower `time.scale`"]
+        run.facts["warnings"] = [*run.facts.get("warnings", ()), warning("inertia", said)]
     return run

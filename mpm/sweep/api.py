@@ -21,7 +21,7 @@ from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Points, counts, exit_code, stale
+from mpm.sweep.tally import Points, counts, exit_code, stale, warned
 
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -93,7 +93,7 @@ def execute(
     if supervisor.broken:
         reporter.note(supervisor.broken)
     code, hurried = exit_code(found, supervisor.stopped), supervisor.signals > 0
-    return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried)
+    return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried, warned(points, lines))
 
 
 def collect_last(gather: Gather, supervisor: Engine) -> bool:

@@ -1,6 +1,6 @@
 """Collect: the points of a sweep on disk to one labelled dataset, `sweep.nc` (interface.md section 3).
 
-    /           one number a point: status, error, outcome, run_id, steps, wall_time, attempts and the final observables; NaN where a point is not ok
+    /           one number a point: status, error, advice, warnings, outcome, run_id, steps, wall_time, attempts and finals; NaN where a point is not ok
     /series     observables over time; where they exceed SERIES bytes, `file`: which of OUT/series/*.nc holds them for each value along the first dimension
     /grid       fields on the grid, float32; where the points' grids differ, or all fields exceed LIMIT bytes, only `file`: where each point's fields lie
     /particles  contiguous ragged: obs, with row_size and row_start on swept dimensions and snapshot

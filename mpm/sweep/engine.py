@@ -74,6 +74,7 @@ class Result:
     seconds: float
     collected: bool = False
     hurried: bool = False  # told to leave at once
+    warned: dict[str, int] = field(default_factory=dict)  # as tally.warned gives it
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Lines: the summaries of a sweep's points (records.point.LINE) by run id, in columns: 54 bytes a point, where dicts would take a thousand."""
+"""Lines: the summaries of a sweep's points (records.point.LINE) by run id, in columns: 58 bytes a point, where dicts would take a thousand."""
 
 import json
 from collections.abc import Collection, Iterable, Iterator, MutableMapping
@@ -11,7 +11,7 @@ from mpm.records.point import LINE
 from mpm.sweep.ids import Ids
 
 NAMES = tuple(name for name in LINE if name != "run_id")
-TEXTS = ("error", "outcome", "advice", "source")  # many points have the same
+TEXTS = ("error", "outcome", "advice", "warned", "source")  # many points have the same
 TIMES = ("started", "finished")
 KINDS = {"status": "i1", "attempts": "i4", "steps": "i8", "wall_time": "f8"} | dict.fromkeys(TEXTS, "i4") | dict.fromkeys(TIMES, "i8")
 START, MILLISECOND = datetime(1970, 1, 1, tzinfo=UTC), timedelta(milliseconds=1)
@@ -50,7 +50,7 @@ class Lines(MutableMapping):
 
     def put(self, number: int, line: dict[str, Any]) -> None:
         """Keep the summary of a point by its number."""
-        kept = line | {name: self.code(line[name]) for name in TEXTS} | {name: self.moment(line[name]) for name in TIMES}
+        kept = line | {name: self.code(line.get(name, "")) for name in TEXTS} | {name: self.moment(line[name]) for name in TIMES}
         self.count += not self.rows["there"][number]
         self.rows[number] = (True, *(kept[name] for name in NAMES))
 

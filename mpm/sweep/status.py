@@ -11,7 +11,8 @@ from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan, skipped
 from mpm.sweep.lock import owner, said_owner
 from mpm.sweep.report import label
-from mpm.sweep.tally import counts, stale
+from mpm.sweep.tally import counts, stale, told, warned
+from mpm.warned import KINDS
 
 SLOWEST = 5
 
@@ -19,7 +20,7 @@ SLOWEST = 5
 def status(out: Path) -> dict[str, Any]:
     """Counts by status, failures grouped by reason, slowest points, points from other source, who works here, seconds of work and of waiting left."""
     store, plan, points, about, lines, damaged = folder_plan(out)
-    found = counts(points, lines, skipped(plan))
+    found, warnings = counts(points, lines, skipped(plan)), warned(points, lines)
     reasons: dict[str, list[str]] = defaultdict(list)
     for number in lines.by_status(ok=False):
         reasons[reason(lines[points.ids[number]])].append(points.ids[number])
@@ -34,6 +35,8 @@ def status(out: Path) -> dict[str, Any]:
         "name": about["name"],
         "points": sum(found.values()),
         "counts": found,
+        "warnings": warnings,
+        "warned": [{"kind": kind, "count": warnings[kind], "advice": KINDS[kind]} | first_with(kind, points, lines) for kind in warnings if kind in KINDS],
         "stale": sorted(points.ids[number] for number in stale(lines)),
         "damaged": damaged,
         "failures": [
@@ -50,6 +53,14 @@ def status(out: Path) -> dict[str, Any]:
     }
 
 
+def first_with(kind: str, points: Any, lines: Any) -> dict[str, str]:
+    """The first point that is ok and has a warning of this kind."""
+    codes = [code for code, text in enumerate(lines.texts) if kind in text.split()]
+    ok = lines.by_status(ok=True)
+    run_id = points.ids[ok[np.isin(lines.rows["warned"][ok], codes)][0]]
+    return {"example": label(points.cases[run_id]), "run_id": run_id}
+
+
 def reason(line: dict) -> str:
     """What failures are grouped by: the status and the kind of outcome, or the text up to its first number."""
     if line["outcome"]:
@@ -61,22 +72,24 @@ def reason(line: dict) -> str:
 
 def said(found: dict[str, Any]) -> str:
     """The same in words."""
-    told = [f"{found['out']}: {found['name']}, {found['points']} points: " + ", ".join(f"{count} {name}" for name, count in found["counts"].items() if count)]
+    words = [f"{found['out']}: {found['name']}, {found['points']} points: {told(found['counts'], found['warnings'])}"]
+    for row in found["warned"]:
+        words.append(f"  {row['count']} x warning: {row['kind']}, as {row['example'] or row['run_id']}; {row['advice']}")
     for failure in found["failures"]:
-        told.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or failure['run_id']}: {failure['error']}")
+        words.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or failure['run_id']}: {failure['error']}")
         if failure["advice"]:
-            told.append(f"      {failure['advice']}")
+            words.append(f"      {failure['advice']}")
     if found["stale"]:
-        told.append(f"  {len(found['stale'])} from other source (--rerun stale runs them again)")
+        words.append(f"  {len(found['stale'])} from other source (--rerun stale runs them again)")
     if found["damaged"]:
-        told.append(f"  {len(found['damaged'])} damaged (the next sweep runs them again)")
+        words.append(f"  {len(found['damaged'])} damaged (the next sweep runs them again)")
     if found["slowest"]:
-        told.append("  slowest: " + ", ".join(f"{row['point'] or row['run_id']} {row['seconds']:.3g} s" for row in found["slowest"]))
+        words.append("  slowest: " + ", ".join(f"{row['point'] or row['run_id']} {row['seconds']:.3g} s" for row in found["slowest"]))
     if found["owner"] is not None:
-        told.append(f"  being swept by {said_owner(found['owner'])}")
+        words.append(f"  being swept by {said_owner(found['owner'])}")
     if found["begun"]:
-        told.append(f"  {len(found['begun'])} begun, with a checkpoint to go on from")
+        words.append(f"  {len(found['begun'])} begun, with a checkpoint to go on from")
     if found["counts"]["pending"] and found["seconds_of_work_left"] is not None:
         workers = f", {found['seconds_left']:.3g} s with {found['owner']['jobs']} workers" if found["seconds_left"] is not None else ""
-        told.append(f"  work left: {found['seconds_of_work_left']:.3g} s of one core{workers}")
-    return "\n".join(told)
+        words.append(f"  work left: {found['seconds_of_work_left']:.3g} s of one core{workers}")
+    return "\n".join(words)

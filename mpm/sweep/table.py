@@ -13,6 +13,7 @@ from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, describe
 from mpm.sweep.align import places
 from mpm.sweep.coordinates import fixed, planned
 from mpm.sweep.over import Over
+from mpm.warned import KINDS, flags
 
 LIMIT = 2**31  # bytes of fields (as they lie in the points' files) that go into sweep.nc
 SERIES = 2**29  # bytes of series that do: a collect takes some two and a half times as much memory
@@ -37,7 +38,8 @@ class Table:
         self.place: dict[str, int] = {}
         self.more: dict[str, list[int]] = {}  # further places of points that stand at several
         self.status, self.attempts = np.full(self.count, SKIPPED, np.int8), np.zeros(self.count, np.int32)
-        self.text = {name: np.full(self.count, "", object) for name in (*TEXTS, "run_id", "file")}
+        self.text = {name: np.full(self.count, "", object) for name in (*TEXTS, "warnings", "run_id", "file")}
+        self.flags = np.zeros(self.count, np.int32)
         self.numbers = {name: np.full(self.count, np.nan) for name in ("steps", "wall_time")}
         self.finals: dict[str, np.ndarray] = {}
         self.model: np.ndarray | None = None  # which model answered each point, where the config left it open
@@ -81,6 +83,7 @@ class Table:
         self.status[place], self.attempts[place] = record.status, record.attempts
         for name in TEXTS:
             self.text[name][place] = getattr(record, name)
+        self.text["warnings"][place], self.flags[place] = "\n".join(record.warnings), flags(record.warnings)
         if self.files is not None:
             self.text["file"][place] = self.files.get(record.run_id, "")
         if ok:
@@ -110,11 +113,15 @@ class Table:
 
     def root(self, swept: list[str]) -> Group:
         """One number a point."""
-        flags = {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)}
-        columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "run_id")} | self.numbers | {"attempts": self.attempts}
+        meanings = {
+            "status": {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)},
+            "warnings": {"flag_meanings": " ".join(KINDS)},
+            "warning_flags": {"flag_masks": 1 << np.arange(len(KINDS), dtype=np.int32), "flag_meanings": " ".join(KINDS)},
+        }
+        columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "warnings", "run_id")} | {"warning_flags": self.flags}
+        columns |= self.numbers | {"attempts": self.attempts}
         columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
-        group = Group({name: described(name, self.dims, self.full(values)) for name, values in columns.items()})
-        group.variables["status"].attrs.update(flags)
+        group = Group({name: described(name, self.dims, self.full(values), **meanings.get(name, {})) for name, values in columns.items()})
         return with_axes(group, planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
 
     def series(self, shards: list[str] | None = None) -> Group:

@@ -1,6 +1,6 @@
 """Tally: the points of a plan, which of them are missing, and how they are counted."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -10,6 +10,7 @@ from mpm.records.provenance import source_hash
 from mpm.records.variables import FAILED, KILLED, OK, STATUS, TIMEOUT
 from mpm.sweep.ids import Ids, raw
 from mpm.sweep.lines import Lines
+from mpm.warned import KINDS, counted
 
 EXIT = {"interrupted": 130, "terminated": 143, "budget": 75}
 
@@ -115,6 +116,31 @@ def counts(points: Points, lines: Lines, skipped: int) -> dict[str, int]:
     told["pending"] += int(points.times[~there].sum())
     told["skipped"] += skipped
     return told
+
+
+def warned(points: Points, lines: Lines) -> dict[str, int]:
+    """Points that are ok and have warnings: all of them under "points", then how many have each kind."""
+    there = lines.rows["there"] & (lines.rows["status"] == OK)
+    found: Counter = Counter()
+    for code, times in zip(*count_each(lines.rows["warned"][there], points.times[there]), strict=True):
+        kinds = lines.texts[code].split()
+        found.update(dict.fromkeys(kinds, int(times)) | ({"points": int(times)} if kinds else {}))
+    return {name: found[name] for name in ("points", *KINDS) if found[name]}
+
+
+def count_each(codes: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Different codes, and how many points have each."""
+    used, place = np.unique(codes, return_inverse=True)
+    return used, np.bincount(place, weights=times, minlength=len(used))
+
+
+def told(found: dict[str, int], warnings: dict[str, int]) -> str:
+    """Counts in words: `32 ok, 9 of them with warnings: volume 7, temperature 4`."""
+    parts = [f"{count} {name}" for name, count in found.items() if count]
+    if warnings:
+        kinds = counted({name: count for name, count in warnings.items() if name != "points"})
+        parts[0] += f", {warnings['points']} of them with warnings: {kinds}" + (";" if len(parts) > 1 else "")
+    return ", ".join(parts).replace(";,", ";")
 
 
 def exit_code(found: dict[str, int], stopped: str) -> int:

@@ -140,6 +140,18 @@ def test_status_groups_reasons(mpm, write):
     assert mpm("status", "results")[0] == 2
 
 
+def test_warnings_are_told_and_strict_makes_them_three(mpm, write):
+    config = write([0.2, fake.WARNS])
+    code, out, _ = mpm("sweep", config, "-j", "1")
+    assert code == 0 and "2 ok, 1 of them with warnings: volume 1, temperature 1; 2 run now" in out
+    assert mpm("sweep", config, "--strict")[0] == 3 and mpm("sweep", write([0.2]), "--strict", "-o", "clean")[0] == 0
+    assert mpm("sweep", write([fake.DIVERGES]), "--strict", "-j", "1", "-o", "bad")[0] == 4
+    code, out, _ = mpm("run", write([fake.WARNS]), "-o", "one")
+    assert code == 0 and "warning: volume: 48 % of the volume is lost" in out
+    assert mpm("run", write([fake.WARNS]), "-o", "one", "--strict")[0] == 3
+    assert mpm.document("run", write([fake.WARNS]), "-o", "one")["warnings"] == fake.WARNINGS
+
+
 def test_collect_and_compare(mpm, write, tmp_path):
     mpm("sweep", write([0.2, 0.5]), "-j", "1", "-o", "a")
     mpm("sweep", write([0.2, 0.5]), "-j", "2", "-o", "b")

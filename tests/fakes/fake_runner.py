@@ -10,10 +10,12 @@ import numpy as np
 
 from mpm.outcome import INVERTED, Outcome, outcome
 from mpm.state import Run
+from mpm.warned import warning
 
 NEEDS = ()  # no numba: these tests start many workers
 RAISES, DIES, HANGS, SLOW, DIVERGES, DIES_ONCE, EXITS, BRIEF = 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0
-GROWS, GRABS = 11.0, 12.0
+GROWS, GRABS, WARNS = 11.0, 12.0, 10.0
+WARNINGS = [warning("volume", "48 % of the volume is lost"), warning("temperature", "block: 7 % out of range")]
 
 
 def mark(text):
@@ -83,7 +85,7 @@ def run_point(experiment, beat=None, keeper=None):
         beat(0.5, end / 2)
     series = {"temperature_centre": 300 + kappa * times, "heat_ledger": 0 * times}
     finals = {"temperature_mean": 300 + kappa, "time_to_centre_95_degC": 1 / kappa}
-    run = Run(ending, times, series, finals, steps=10, wall_time=0.01, facts={"binds": "conduction"})
+    run = Run(ending, times, series, finals, steps=10, wall_time=0.01, facts={"binds": "conduction"} | ({"warnings": WARNINGS} if kappa == WARNS else {}))
     if experiment.output.snapshots is not None:
         run.snapshot_times = times[::2]
         run.axes = {"x": np.linspace(0, 0.1, 5)}

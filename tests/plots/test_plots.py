@@ -188,3 +188,15 @@ def test_snapshots_of_particles(tree):
     fig = _draw(root, "snapshot")
     np.testing.assert_allclose(fig.axes[1].collections[0].get_offsets(), position[20:])
     assert "κ = 0.2 W/m/K" in texts(fig)
+
+
+def test_points_with_warnings_are_rings_that_say_their_kinds(tree):
+    axes = {"kappa": [0.2, 0.3, 0.4, 0.5]}
+    found = tree(axes, {"temperature_mean": np.array([300.0, 301.0, 302.0, 303.0])}, status=[0, 0, 0, 1], error=["", "", "", "diverged: det F <= 0"])
+    flags = {"flag_meanings": "volume temperature heat", "flag_masks": np.array([1, 2, 4], np.int32)}
+    found["warning_flags"] = xr.DataArray(np.array([0, 3, 1, 1], np.int32), dims=["kappa"], attrs=flags)
+    fig = overview(found)
+    rings = [line for line in panels(fig)[0].lines if line.get_markerfacecolor() == "white" and line.get_marker() == "o"]
+    assert [line.get_xdata().tolist() for line in rings] == [[0.3, 0.4]]
+    assert "with warnings (2 points): volume 2, temperature 1" in texts(fig)
+    assert not any("warnings" in text for text in texts(overview(tree(axes, {"temperature_mean": np.arange(4.0)}))))

@@ -30,16 +30,14 @@ def test_the_same_states_sooner(core):
         assert np.abs(fast.series[name] - slow.series[name])[late].max() < 0.05 * np.ptp(slow.series[name]), name
     assert fast.finals["time_to_top_302_K"] == pytest.approx(slow.finals["time_to_top_302_K"], rel=0.01)
     assert "time_scaling" not in slow.facts and "scaling_froude" not in slow.finals
-    assert fast.facts["time_scaling"]["valid"] and "warnings" not in fast.facts and fast.outcome.message == ""
+    assert fast.facts["time_scaling"]["valid"] and fast.facts["warnings"] == slow.facts["warnings"] == []
 
 
 def test_too_much_is_said(core):
     run = mpm.run_point(creep(core, 200.0))
     assert run.outcome.ok and not run.facts["time_scaling"]["valid"]
-    assert len(run.facts["warnings"]) == 1
+    assert [text for text in run.facts["warnings"] if text.startswith("inertia: time scaling by 200 lets inertia in: ") and "kinetic share" in text]
     assert run.finals["scaling_kinetic"] > 0.05
-    assert "kinetic share" in run.outcome.message
-    assert "time.scale" in run.outcome.advice
 
 
 def test_what_is_scaled(core):

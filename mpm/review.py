@@ -1,0 +1,103 @@
+"""Review: what of a run's records a careful user wants to know, as warnings (mpm.warned). What only a running scene can see is warned of by mpm.guards.
+
+volume    the whole volume is off its start by more than VOLUME beyond what the expansion of the temperatures reached explains
+heat      heat content and heat taken in disagree by more than HEAT of the larger
+thin      a body, or all material, is less than THIN cells across
+probe     a probe has no value
+edge      material is within a cell of an open side of the domain, and was not at the start
+Cost      a few microseconds a point: series are looked at once, at the end.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from mpm.scene.build import elastic_law, stress_temperature_modulus
+from mpm.scene.shapes import shape
+from mpm.state import Run
+from mpm.warned import warning
+
+VOLUME, HEAT, THIN = 0.1, 0.01, 2.0
+SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
+
+
+def review(experiment: Any, run: Run) -> list[str]:
+    """The warnings that the records of a run of one point give rise to."""
+    if not len(run.times):
+        return []
+    return [warning(kind, said) for kind, look in LOOKS.items() for said in look(experiment, run)]
+
+
+def explained(experiment: Any, run: Run) -> tuple[float, float]:
+    """Smallest and largest volume ratio that expansion gives at the temperatures of the run."""
+    found = [0.0]
+    for material in experiment.materials.values():
+        if material.expansion is not None:
+            law = elastic_law(material.elastic)
+            law = getattr(law, "one", law)  # moduli that follow temperature: gamma follows them
+            slope = stress_temperature_modulus(material.expansion, law) / (law.lam + 2 * law.mu / 3)
+            for name in ("temperature_min", "temperature_max"):
+                reached = np.minimum(run.series[name], getattr(material.expansion, "set", np.inf))
+                found += (slope * (reached - material.expansion.reference)).tolist()
+    return float(np.exp(min(found))), float(np.exp(max(found)))
+
+
+def extents(experiment: Any, run: Run) -> dict[str, np.ndarray]:
+    """Extent over time along each direction; none where nothing moves."""
+    return {name.removeprefix("extent_"): values for name, values in run.series.items() if name.startswith("extent_")} if experiment.moving else {}
+
+
+def volume(experiment: Any, run: Run) -> Iterator[str]:
+    if "volume_total" not in run.series:
+        return
+    ratio, (least, most) = run.series["volume_total"] / run.series["volume_total"][0], explained(experiment, run)
+    lost, gained = 1 - float(ratio.min()) / least, float(ratio.max()) / most - 1
+    for share, word, at in ((lost, "lost", ratio.argmin()), (gained, "gained", ratio.argmax())):
+        if share > VOLUME:
+            yield f"{100 * share:.0f} % of the volume is {word} by t = {run.times[at]:.4g} s, beyond what expansion explains"
+
+
+def heat(experiment: Any, run: Run) -> Iterator[str]:
+    if "heat_ledger" not in run.series:
+        return
+    most = max(np.abs(run.series[name]).max() for name in ("heat_total", "heat_exchanged"))
+    off = np.abs(run.series["heat_ledger"]).max()
+    if off > HEAT * most > 0:
+        yield f"heat content and heat taken in disagree by {off:.3g} J, {100 * off / most:.2g} % of the larger"
+
+
+def thin(experiment: Any, run: Run) -> Iterator[str]:
+    if not extents(experiment, run):
+        return
+    cell, dimension = experiment.grid.cell, experiment.grid.dimension
+    for name, body in experiment.bodies.items():
+        lower, upper = shape(body.shape, dimension).bounds()
+        if (across := float(np.min(upper - lower)) / cell) < THIN * (1 - 1e-9):
+            yield f"{name} is {across:.2g} cells across"
+            return
+    across = {axis: values.min() / cell for axis, values in extents(experiment, run).items()}
+    axis = min(across, key=across.get)
+    if across[axis] < THIN - 1:
+        yield f"the material is down to {across[axis]:.2g} cells across along {axis}"
+
+
+def probe(experiment: Any, run: Run) -> Iterator[str]:
+    for name in experiment.output.probes:
+        gone = np.flatnonzero(~np.isfinite(run.series.get(f"temperature_{name}", np.zeros(0))))
+        if len(gone):
+            yield f"{name} has no value from t = {run.times[gone[0]]:.4g} s on"
+
+
+def edge(experiment: Any, run: Run) -> Iterator[str]:
+    axes = extents(experiment, run)
+    for axis, size in zip(axes, experiment.grid.size, strict=False):
+        sides = ("front", "back") if axis == "y" and len(axes) == 3 else SIDES[axis]
+        rooms = run.series[f"position_min_{axis}"], size - run.series[f"position_max_{axis}"]
+        for side, room in zip(sides, rooms, strict=True):
+            near = np.flatnonzero((room < experiment.grid.cell) & (room < room[0] - 0.1 * experiment.grid.cell))
+            if side != "axis" and side not in experiment.walls and len(near):
+                yield f"material is within a cell of the open side {side} from t = {run.times[near[0]]:.4g} s on"
+
+
+LOOKS = {"volume": volume, "heat": heat, "thin": thin, "probe": probe, "edge": edge}
