@@ -1,7 +1,7 @@
 """Observers of a run of moving bodies: series at the output times, probes, crossings, snapshots.
 
-A probe is a point of the body: the nearest particle at the start and the offset from it, so it moves with the material; its temperature is
-theta_p + c_p . offset. Crossings (`time_to`) are looked for after every heat step, linear in between.
+A probe is a point of the material: it moves, turns and stretches with its body (mpm.follow), and is nan once its particle has left the domain.
+Crossings (`time_to`) are looked for after every heat step, linear in between.
 """
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
 from mpm.error import Errors
+from mpm.follow import nearest, renumbered, sampled
 from mpm.memory import rows
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
@@ -28,6 +29,7 @@ class Watch:
     """
 
     probes: dict[str, np.ndarray] = field(default_factory=dict)
+    homes: dict[str, int] = field(default_factory=dict)  # number of the body that a probe is a point of; the nearest unless given
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
     snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # a subset of the output times
     grid: tuple[str, ...] = ()
@@ -56,29 +58,30 @@ class Recorder:
         self.times: list[float] = []
         self.series: dict[str, list[float]] = {}
         self.frames: list[tuple[float, dict, dict]] = []
-        self.places = {name: self.place(scene, np.asarray(x, float)) for name, x in scene.watch.probes.items()}
+        self.places = {name: self.place(scene, name) for name in scene.watch.probes}
         self.errors = scene.watch.exact if isinstance(scene.watch.exact, Errors) else None
         self.origin = [body.particles.x.astype(float) for body in self.warm] if scene.watch.exact is not None and self.errors is None else []
         self.crossed = {name: math.nan for name, _, _ in scene.watch.thresholds}
         self.seen = {probe: (0.0, self.probe(probe)) for _, probe, _ in scene.watch.thresholds}
 
     @staticmethod
-    def place(scene, x):
-        """(number of the body, particle, offset) of the particle nearest to x."""
-        best = None
-        for b, body in enumerate(scene.bodies):
-            distance = np.sum((body.particles.x - x) ** 2, axis=1)
-            i = int(np.argmin(distance))
-            if best is None or distance[i] < best[0]:
-                best = (distance[i], b, i, x - body.particles.x[i])
-        return best[1:]
+    def place(scene, name: str):
+        """(number of the body, the point of it) where a probe is at the start."""
+        x, bodies = np.asarray(scene.watch.probes[name], float), scene.bodies
+        away = [float(np.min(np.sum((body.particles.x - x) ** 2, axis=1))) for body in bodies]
+        home = scene.watch.homes.get(name, int(np.argmin(away)))
+        return home, nearest(bodies[home].particles.x.astype(float), x)
 
     def probe(self, name: str) -> float:
-        b, i, offset = self.places[name]
-        body, i = self.scene.bodies[b], self.scene.order.where(b, i)
+        home, point = self.places[name]
+        body = self.scene.bodies[home]
         if not isinstance(body.thermal, Thermal):
             return body.thermal.temperature
-        return float(body.thermal.zero + body.thermal.theta[i] + body.thermal.c[i] @ offset)
+        point = renumbered(point, self.scene.order.places(home))
+        here, size = body.particles.x[point.owner[0]], np.array(grid_shape(self.scene.space)) - (1 + 2 * PAD)
+        if not np.all((here >= -self.scene.space.h) & (here <= (size + 1) * self.scene.space.h)):
+            return math.nan
+        return float(body.thermal.zero + sampled(point, body.thermal.theta, body.thermal.c)[0])
 
     def watch(self, scene, now: float) -> None:
         """Look for crossings since the last heat step."""

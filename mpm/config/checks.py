@@ -77,6 +77,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.scaling, once),
     (output.clock, once),
     (output.probe, output.probes),
+    (output.probe_home, output.probes),
     (output.observable, output.observables),
     (output.snapshots, once),
     (scene.method, once),

@@ -1,4 +1,4 @@
-"""Rules for the output: probes lie in the domain, observables and fields exist and have their physics, exact solutions their body."""
+"""Rules for the output: probes lie in a body, observables and fields exist and have their physics, exact solutions their body."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -7,8 +7,9 @@ from mpm.config.explain import Finding
 from mpm.config.loose import MISSING, Unknown
 from mpm.config.problems import near
 from mpm.config.rules_scene import heats, moves, plain_names, vector
+from mpm.config.shapes_fit import bounds, home, misfits
 
-MOST_SAMPLES = 10**6
+MOST_SAMPLES, MOST_NAMED = 10**6, 4
 OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff")
 
 
@@ -31,6 +32,21 @@ def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
     for index, (x, length) in enumerate(zip(point, experiment.grid.size, strict=False) if not wrong else ()):
         if not 0 <= x <= length:
             yield Finding((*path, index), "the probe lies outside the domain", f"0 to {length:g} [m]", given=x)
+
+
+def probe_home(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
+    """A probe is a point of a body."""
+    bodies, grid = experiment.bodies, experiment.grid
+    fit = not any(body.shape.kind and list(misfits(body.shape, grid.dimension, grid.directions)) for body in bodies.values())
+    inside = len(grid.size) == len(point) == grid.directions and all(0 <= x <= length for x, length in zip(point, grid.size, strict=True))
+    if fit and inside and home(bodies, point, grid.size) is None:
+        near_by = " or ".join(f"{body} ({spans(item.shape, grid.dimension)})" for body, item in list(bodies.items())[:MOST_NAMED])
+        yield Finding(("output", "probes", name), "the probe lies in no body, so nothing has a temperature there", f"a point of {near_by}", given=list(point))
+
+
+def spans(shape: Any, dimension: Any) -> str:
+    """The box round a shape, in words."""
+    return " x ".join(f"{low:.6g} to {high:.6g}" for low, high in zip(*bounds(shape, dimension), strict=True)) + " m"
 
 
 def probes(experiment: Any) -> Iterator[tuple]:

@@ -1,4 +1,4 @@
-"""Whether a shape suits the dimension and lies in the domain."""
+"""Whether a shape suits the dimension, lies in the domain, and holds a point."""
 
 import math
 from collections.abc import Iterator
@@ -61,3 +61,40 @@ def outside(shape: Any, dimension: Any, size: tuple[float, ...]) -> str:
         if a < -ROUND_OFF * length or b > length * (1 + ROUND_OFF):
             return f"the shape leaves the domain: it spans {a:.6g} to {b:.6g} m in direction {index}, the domain 0 to {length:g} m"
     return ""
+
+
+def holds(shape: Any, point: tuple[float, ...], slack: float) -> bool:
+    """Whether a point lies in a shape or at most `slack` [m] outside. The shape suits the dimension, the point has a number a direction."""
+    if isinstance(shape, MaterialPoint):
+        return True
+    if isinstance(shape, Ball):
+        return math.dist(point, shape.centre) <= shape.radius + slack
+    if isinstance(shape, Ring):
+        return shape.inner - slack <= math.dist(point, shape.centre) <= shape.outer + slack
+    if isinstance(shape, Cylinder):
+        return math.dist(point[:-1], shape.base[:-1]) <= shape.radius + slack and -slack <= point[-1] - shape.base[-1] <= shape.height + slack
+    if isinstance(shape, Polygon):
+        return within(shape.vertices, point, slack)
+    if shape.angle:
+        centre = [(low + high) / 2 for low, high in zip(shape.lower, shape.upper, strict=True)]
+        c, s, x, y = math.cos(shape.angle), math.sin(shape.angle), point[0] - centre[0], point[1] - centre[1]
+        point = (centre[0] + c * x + s * y, centre[1] - s * x + c * y)
+    return all(low - slack <= x <= high + slack for low, x, high in zip(shape.lower, point, shape.upper, strict=True))
+
+
+def within(vertices: Any, point: tuple[float, ...], slack: float) -> bool:
+    """Whether a point lies in a simple polygon: a ray to the right crosses its edges an odd number of times, or an edge is near."""
+    inside, (x, y) = False, point
+    for (a, b), (c, d) in zip(vertices, (*vertices[1:], vertices[0]), strict=True):
+        length = (c - a) ** 2 + (d - b) ** 2
+        part = min(1.0, max(0.0, ((x - a) * (c - a) + (y - b) * (d - b)) / length)) if length else 0.0
+        if math.hypot(x - a - part * (c - a), y - b - part * (d - b)) <= slack:
+            return True
+        inside ^= (b > y) != (d > y) and x < a + (y - b) / (d - b) * (c - a)
+    return inside
+
+
+def home(bodies: Any, point: tuple[float, ...], size: tuple[float, ...]) -> int | None:
+    """Number of the first body that holds a point, by round-off of the domain's size at most; None where none does."""
+    slack = ROUND_OFF * max(size, default=0.0)
+    return next((k for k, body in enumerate(bodies.values()) if holds(body.shape, point, slack)), None)

@@ -206,6 +206,6 @@ class Order:
         """The original number of what is particle i now; -1 stays what it is."""
         return i if self.original[b] is None or i < 0 else int(self.original[b][i])
 
-    def where(self, b: int, name: int) -> int:
-        """The place of a particle by its original number."""
-        return name if self.original[b] is None else int(np.flatnonzero(self.original[b] == name)[0])
+    def places(self, b: int) -> np.ndarray | None:
+        """Where the particles of a body are now, by their original numbers; None where nothing was moved."""
+        return None if self.original[b] is None else inverse(self.original[b])

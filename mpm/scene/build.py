@@ -11,6 +11,7 @@ import numpy as np
 
 from mpm.basis import BASES
 from mpm.boundary import KINDS, extents
+from mpm.config.shapes_fit import home
 from mpm.error import Motion
 from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
 from mpm.observe import Watch
@@ -283,6 +284,7 @@ def watch(experiment, times: np.ndarray, exact=None) -> Watch:
         due = times[np.unique(np.argmin(np.abs(times[:, None] - wanted), axis=0))]
     return Watch(
         probes={name: np.array(x) + shift for name, x in experiment.output.probes.items()},
+        homes={name: home(experiment.bodies, x, experiment.grid.size) for name, x in experiment.output.probes.items()},
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
         snapshots=due,
         grid=snapshots.grid if snapshots else (),

@@ -1,8 +1,10 @@
 """Checks across sections, those that the broken configs do not show; and that right scenes pass."""
 
+import numpy as np
 import pytest
 
 from mpm.config import ConfigError, load
+from mpm.config.shapes_fit import holds
 
 SHAPES = [
     (1, {"box": {"lower": [0], "upper": [1]}}),
@@ -101,3 +103,28 @@ def test_exact_needs_a_body_when_there_are_several(loaf):
         load(loaf)
     loaf["exact"] = {"robin_cylinder": {"body": "crumb"}}
     assert load(loaf).exact.body == "crumb"
+
+
+@pytest.mark.parametrize(("dimension", "shape"), SHAPES)
+def test_a_body_holds_the_points_of_its_shape(dimension, shape):
+    """Against the signed distance that cuts bodies, on the surface too."""
+    from mpm.scene.shapes import shape as outlined
+
+    experiment = load(scene(dimension, shape))
+    outline, slack = outlined(experiment.bodies["a"].shape, dimension), 1e-9
+    points = np.random.default_rng(0).uniform(-0.1, 1.1, (2000, len(outline.bounds()[0])))
+    points = points[np.abs(outline.distance(points)) > 1e-6]
+    held = [holds(experiment.bodies["a"].shape, tuple(x), slack) for x in points.tolist()]
+    assert held == (outline.distance(points) < 0).tolist() and 0 < sum(held) < len(held)
+
+
+def test_a_probe_in_no_body_is_refused_with_a_place_at_every_point_of_a_sweep():
+    from mpm.sweep.cases import plan
+
+    data = scene(2, {"ring": {"centre": [0.5, 0.5], "inner": 0.2, "outer": 0.4}}) | {"output": {"probes": {"rim": [0.9, 0.5], "hole": [0.5, 0.5]}}}
+    with pytest.raises(ConfigError, match=r"output.probes.hole: the probe lies in no body.*a point of a \(0.1 to 0.9 x 0.1 to 0.9 m\)"):
+        load(data)
+    del data["output"]["probes"]["hole"]
+    assert load(data).output.probes["rim"] == (0.9, 0.5)
+    with pytest.raises(ConfigError, match=r"output.probes.rim: the probe lies in no body"):
+        plan(load(data | {"sweep": {"axes": {"bodies.a.shape.ring.outer": [0.4, 0.35]}}}))
