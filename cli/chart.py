@@ -4,12 +4,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Jobs, Json, MaxRuns, Quiet, Set, limit, load
+from mpm_cli.options import Jobs, Json, MaxRuns, Quiet, Set, folder, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, say
 
 Configs = Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="YAML files of experiments.", show_default=False)]
-Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", help="Folder for results.  [default: results/<config name>-chart]", show_default=False)]
+TO = "Folder for results.  [default: results/<config name>-chart]"
+Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", parser=folder, help=TO, show_default=False)]
 BESIDE = "Another program, timed in every round; it prints JSON lines {peer, seconds, error}."
 Peer = Annotated[list[str] | None, typer.Option(metavar="NAME=COMMAND", help=BESIDE, show_default=False)]
 
@@ -54,8 +55,8 @@ def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, cold: bool, p
     from mpm.sweep.engine import Options
 
     experiment = with_chart(load(config, set_), quick)
-    folder = out or Path("results") / f"{experiment.name}-chart{'-quick' if quick else ''}"
-    result = draw_up(experiment, folder, Options(jobs, timeout), lambda: reporter(as_json, quiet), peers, cold, max_runs)
+    place = out or Path("results") / f"{experiment.name}-chart{'-quick' if quick else ''}"
+    result = draw_up(experiment, place, Options(jobs, timeout), lambda: reporter(as_json, quiet), peers, cold, max_runs)
     picture = draw(result) if not result.stopped else None
     for line in result.sentences:
         say(line, as_json, quiet)
@@ -63,7 +64,7 @@ def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, cold: bool, p
         say(f"stopped ({result.stopped}); the same command goes on", as_json, False)
     else:
         say(f"{result.dataset}\n{picture}", as_json, quiet)
-    files = {"out": folder, "dataset": result.dataset, "picture": picture}
+    files = {"out": place, "dataset": result.dataset, "picture": picture}
     return {**files, "answer": result.sentences, "counts": result.counts, "stopped": result.stopped or None, "exit_code": result.exit_code}
 
 

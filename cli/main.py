@@ -43,7 +43,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run a command and return its exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        return int(typer.main.get_command(app).main(arguments, prog_name="mpm", standalone_mode=False) or 0)
+        return int(typer.main.get_command(app).main(arguments, prog_name="mpm", standalone_mode=False, obj=arguments) or 0)
     except UsageError as error:
         usage = error.ctx.get_usage() + "\n" if error.ctx and arguments else ""
         warn(f"{usage}error: {error.format_message()}" if usage else error.format_message())

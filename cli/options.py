@@ -1,6 +1,7 @@
 """Options that commands share: their types, and the words of their help."""
 
 import re
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -46,9 +47,17 @@ def share(text: str) -> float:
     return value
 
 
+def folder(text: str) -> Path:
+    """A file or folder. Nothing at all would be the current folder."""
+    if not text.strip():
+        raise typer.BadParameter("it is empty; name a folder or a file")
+    return Path(text)
+
+
 Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of the experiment.", show_default=False)]
-Folder = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a sweep.", show_default=False)]
-Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", help="Folder for results.  [default: results/<config name>]", show_default=False)]
+Folder = Annotated[Path, typer.Argument(metavar="OUT", parser=folder, help="Folder of a sweep.", show_default=False)]
+TO = "Folder for results.  [default: results/<config name>]"
+Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", parser=folder, help=TO, show_default=False)]
 Jobs = Annotated[int, typer.Option("-j", "--jobs", metavar="N|auto", parser=workers, help="Worker processes; auto is one a core.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Set a parameter; repeat for more.", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, talk on stderr.")]
@@ -70,6 +79,11 @@ def limit(help_: str) -> Any:
 
 KEEP = "How often a running point saves a checkpoint, from which a killed one goes on.  [default: 1min]"
 Checkpoints = Annotated[float | None, limit(KEEP)]
+
+
+def again(context: typer.Context) -> str:
+    """The command that goes on from what this one left: the same, but for an order to begin again."""
+    return re.sub(r" --rerun[= ]all(?= |$)", "", shlex.join(["mpm", *(context.obj or ())]))
 
 
 def overrides(pairs: list[str] | None) -> dict[str, Any]:

@@ -4,14 +4,14 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from mpm_cli.options import Folder
+from mpm_cli.options import Folder, folder
 from mpm_cli.talk import say
 
 
 def plot(
     out: Folder,
     names: Annotated[list[str] | None, typer.Argument(metavar="[NAME...]", help="Which figures.  [default: overview]", show_default=False)] = None,
-    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="File of a single figure.", show_default=False)] = None,
+    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", parser=folder, help="File of a single figure.", show_default=False)] = None,
     svg: Annotated[bool, typer.Option("--svg", help="Write OUT/<name>.svg rather than .png.")] = False,
 ) -> None:
     """Draw figures of a sweep as PNG or SVG."""

@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, amount, limit, load
+from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, again, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
 
@@ -24,6 +24,13 @@ def route(text: str) -> str:
     return text
 
 
+def address(text: str) -> str:
+    """A value of --scheduler."""
+    if not text.strip():
+        raise typer.BadParameter("it is empty; say tcp://host:8786, or local")
+    return text
+
+
 MEMORY = "Most memory of a point, as 4GB: refused before it starts, ended while it runs.  [default: what is free]"
 SCHEDULER = "Run on a Dask cluster, as tcp://host:8786; local starts one on 127.0.0.1 with JOBS workers."
 RESULTS = "From a cluster: over the wire, or through OUT where all workers see it under the same path."
@@ -33,6 +40,7 @@ Rerun = Annotated[str | None, typer.Option(metavar="failed|stale|all", parser=wh
 
 
 def sweep(
+    context: typer.Context,
     config: Config,
     out: Out = None,
     jobs: Jobs = "auto",
@@ -46,7 +54,7 @@ def sweep(
     max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
     max_runs: MaxRuns = 10_000,
     memory: Annotated[float | None, typer.Option(metavar="SIZE", parser=amount, help=MEMORY, show_default=False)] = None,
-    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER, show_default=False)] = None,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", parser=address, help=SCHEDULER, show_default=False)] = None,
     results: Annotated[str, typer.Option(metavar="wire|shared", parser=route, help=RESULTS)] = "wire",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
     smoke: Smoke = False,
@@ -83,7 +91,7 @@ def sweep(
     if as_json:
         document(summary(result, picture))
     else:
-        for line in words(result, picture, config):
+        for line in words(result, picture, again(context)):
             say(line, quiet=quiet and result.exit_code == 0)
     raise typer.Exit(result.exit_code)
 
@@ -129,8 +137,8 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
     }
 
 
-def words(result: Any, picture: Any, config: Any) -> list[str]:
-    """The same for people."""
+def words(result: Any, picture: Any, command: str) -> list[str]:
+    """The same for people; `command` goes on with what is left."""
     from mpm.sweep.tally import told as counts_told
 
     told = [f"{counts_told(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
@@ -139,7 +147,7 @@ def words(result: Any, picture: Any, config: Any) -> list[str]:
         told.append(f"there was no time to collect what ran: `mpm collect {result.out}` does, and so does the next sweep")
     if result.counts["pending"]:
         left = f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left"
-        told.append(f"{left}: the same command goes on (mpm sweep {config} -o {result.out})")
+        told.append(f"{left}; to go on: {command}")
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
     if bad:
         told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")

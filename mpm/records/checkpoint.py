@@ -1,7 +1,7 @@
 """Checkpoints: what a run remembers (mpm.memory), in one sealed file beside the results, so that a killed run goes on where it was, bit for bit.
 
     body    the arrays' bytes, one after another
-    line    run_id, source, versions and processor that made it, and the memory with {"#": [offset, dtype, shape]} in the place of each array
+    line    run_id, source, versions and processor that made it, when, and the memory with {"#": [offset, dtype, shape]} in the place of each array
 
 Saved every so many seconds of wall time, and when the run is told to stop; a run that ends before that writes nothing. The seal is checked before a
 byte is looked at. What other source, other versions or another processor made is not gone on with: the bits would differ.
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mpm.records.netcdf import DamagedFile, seal, set_aside, unseal, write_whole
-from mpm.records.provenance import processor, source_hash, versions
+from mpm.records.provenance import now, processor, source_hash, versions
 
 EVERY = 60.0  # wall time between two checkpoints, unless told [s]
 SHARE = 20.0  # a checkpoint may take a twentieth of the time
@@ -95,6 +95,7 @@ class Checkpoint:
         if other:
             self.note(f"{self.path}: from other {' and '.join(other)}; the run starts from its start")
             return None
+        self.note(f"{self.path}: the run goes on from what was saved at {line.get('saved', 'an unknown time')}")
         return memory
 
     def due(self, stop: bool) -> bool:
@@ -106,7 +107,7 @@ class Checkpoint:
         began = time.monotonic()
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self.path, pack(memory, self.line))
+            write_whole(self.path, pack(memory, self.line | {"saved": now()}))
             self.there = True
         except OSError as error:
             self.note(f"no checkpoint: {error.filename}: {error.strerror}")

@@ -1,4 +1,4 @@
-"""What the shell and Python share: `execute` (a sweep to its folder), `run_one` (a point to its dataset), `collect_folder`.
+"""What the shell and Python share: `execute` (a sweep to its folder), `run_one` (a point to its dataset; `alone` keeps it in a folder), `collect_folder`.
 
 `sweep` and `run` are the Python face: the same, returning an xarray.DataTree.
 """
@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from mpm.records.checkpoint import EVERY, Checkpoint
-from mpm.records.provenance import cores, versions
+from mpm.records.provenance import cores
 from mpm.sweep import engine
 from mpm.sweep.engine import Engine, Options, Result
 from mpm.sweep.gather import Gather, NotCollected
@@ -60,19 +59,9 @@ def execute(
     began = time.monotonic()
     plan = planned(experiment, kind, max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
-    try:
-        store.out.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise Refused(f"{store.out} is no folder; choose another place with --out") from None
-    with Lock(store.out, jobs=options.jobs) as lock:
-        if lock.dead is not None:
-            left = store.tidy()
-            reporter.note(f"{said_owner(lock.dead)} ended without leaving; its lock is cleared" + (f", {left} half-written files are removed" if left else ""))
+    with taken(store, reporter.note, jobs=options.jobs):
         store.claim(experiment, swept_paths(plan), options.smoke, take_over=options.rerun in ("stale", "all"), kind=kind)
-        lines, damaged = store.lines(points.ids)
-        for run_id in damaged:
-            reporter.note(f"{store.set_aside(run_id)}: the file was damaged, or held another point, and is set aside; its point runs again")
-
+        lines = sound(store, points, reporter.note)
         gather = Gather(store, plan, lines, reporter.note)
         supervisor = Engine(store, points, lines, options, reporter, gather)
         with signals(supervisor.signal):
@@ -94,6 +83,28 @@ def execute(
         reporter.note(supervisor.broken)
     code, hurried = exit_code(found, supervisor.stopped), supervisor.signals > 0
     return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried, warned(points, lines))
+
+
+@contextlib.contextmanager
+def taken(store: Store, note: Callable[[str], None], **more: Any) -> Iterator[None]:
+    """A folder, made where it is missing, that this process alone writes in while this lasts."""
+    try:
+        store.out.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise Refused(f"{store.out} is no folder; choose another place with --out") from None
+    with Lock(store.out, **more) as lock:
+        if lock.dead is not None:
+            left = store.tidy()
+            note(f"{said_owner(lock.dead)} ended without leaving; its lock is cleared" + (f", {left} half-written files are removed" if left else ""))
+        yield
+
+
+def sound(store: Store, points: Points, note: Callable[[str], None]) -> Lines:
+    """Summaries of the points that are there; files that are not as they were written are set aside."""
+    lines, damaged = store.lines(points.ids)
+    for name in damaged:
+        note(f"{store.set_aside(name)}: the file was damaged, or held another point, and is set aside; its point runs again")
+    return lines
 
 
 def collect_last(gather: Gather, supervisor: Engine) -> bool:
@@ -161,48 +172,26 @@ def folder_plan(out: Path) -> tuple[Store, Any, Points, dict, Lines, list[str]]:
     return store, plan, points, about, *store.lines(points.ids)
 
 
-def collect_folder(out: Path) -> tuple[Path, bool, dict[str, int]]:
-    """Assemble sweep.nc from the points that are there: its path, whether it was written, counts by status."""
+def collect_folder(out: Path, target: Path | None = None) -> tuple[Path, bool, dict[str, int]]:
+    """Assemble sweep.nc from the points that are there, in the folder or at `target`: its path, whether it was written, counts by status."""
     from mpm.sweep.collect import collect
 
     store, plan, points, about, lines, _ = folder_plan(out)
-    written = collect(store, plan, about, lines)
-    return store.dataset, written, counts(points, lines, skipped(plan))
+    written = collect(store, plan, about, lines, target)
+    return target or store.dataset, written, counts(points, lines, skipped(plan))
 
 
-def run_one(
-    experiment: Any,
-    beat: Callable[[float, float], bool] | None = None,
-    max_runs: int = 10_000,
-    checkpoint: Path | None = None,
-    every: float = EVERY,
-    note: Callable[[str], None] | None = None,
-    threads: int = 1,
-) -> tuple[bytes, Any, Any]:
-    """The first point of an experiment in this process: the bytes of its dataset (four groups, no swept dimensions), its record, and its keeper.
-
-    checkpoint, every, note    where and how often [s] the run keeps how far it is, and who hears of trouble with that (records.checkpoint); None: nowhere
-    threads                    that share one large run
-    """
+def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000, threads: int = 1) -> tuple[bytes, Any]:
+    """The first point of an experiment in this process, kept nowhere: the bytes of its dataset, and its record. `threads` share one large run."""
+    from mpm.sweep.alone import about_one
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
     from mpm.sweep.worker import compute
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
-    keeper = Checkpoint(checkpoint, case.run_id, every, note) if checkpoint is not None else None
-    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, threads, config=case.experiment.resolved())
+    record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, None, threads, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
-    about = {
-        "title": experiment.title,
-        "name": experiment.name,
-        "source": experiment.source,
-        "smoke": False,
-        "swept": [],
-        "resolved": case.experiment.resolved(),
-        "versions": versions(),
-        "threads": record.facts.get("threads", 1),
-    }
-    return dataset(alone, about, {alone.cases[0].run_id: record}), record, keeper
+    return dataset(alone, about_one(experiment, case, record), {alone.cases[0].run_id: record}), record
 
 
 def tree_of(source: Any) -> Any:
@@ -226,6 +215,8 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
     more   the other fields of `engine.Options`: timeout, retries, time_budget, max_failures, rerun, smoke, scheduler, shared, checkpoint, memory
     Ctrl-C leaves checkpoints of what runs, collects, and raises KeyboardInterrupt; the same call again goes on from them.
     """
+    if out is not None and not str(out).strip():
+        raise Refused("out is empty; name a folder")
     options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)
     result = execute(experiment, Path(out) if out is not None else None, options, reporter, max_runs)
     if result.stopped in ("interrupted", "terminated"):

@@ -10,6 +10,8 @@ Points without a record are `pending`, points that `where` dropped are `skipped`
 
 import hashlib
 import json
+import os
+from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import DamagedFile, seal, summary, to_bytes, write_whole
@@ -20,24 +22,25 @@ from mpm.sweep.store import BATCH, Store
 from mpm.sweep.table import Table
 
 
-def collect(store: Store, plan: Any, about: dict, lines: Lines) -> bool:
-    """Write sweep.nc unless it holds just this already; whether it was written. `about` is experiment.json."""
-    digest = due(store, about, lines)
+def collect(store: Store, plan: Any, about: dict, lines: Lines, target: Path | None = None) -> bool:
+    """Write sweep.nc (or `target`) unless it holds just this already; whether it was written. `about` is experiment.json."""
+    target = target or store.dataset
+    digest = due(store, about, lines, target)
     if not digest:
         return False
-    data, outside = assemble(store, plan, about, lines)
-    write_whole(store.dataset, seal(data, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {})))
+    data, outside = assemble(store, plan, about, lines, target.parent)
+    write_whole(target, seal(data, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {})))
     return True
 
 
-def due(store: Store, about: dict, lines: Lines) -> str:
+def due(store: Store, about: dict, lines: Lines, target: Path | None = None) -> str:
     """The fingerprint of the dataset to write; empty where it is there."""
-    digest = fingerprint(about, lines)
+    digest, target = fingerprint(about, lines), target or store.dataset
     try:
-        old = summary(store.dataset)
+        old = summary(target)
     except DamagedFile:
         old = None  # a dataset is made anew from the points, whatever it was
-    there = old is not None and old.get("digest") == digest and all((store.out / file).exists() for file in old.get("files", ()))
+    there = old is not None and old.get("digest") == digest and all((target.parent / file).exists() for file in old.get("files", ()))
     return "" if there else digest
 
 
@@ -49,26 +52,26 @@ def fingerprint(about: dict, lines: Lines) -> str:
     return digest.hexdigest()
 
 
-def assemble(store: Store, plan: Any, about: dict, lines: Lines) -> tuple[bytes, list[str]]:
-    """The bytes of the dataset, and the files that hold what does not fit into it, which are there when this returns."""
+def assemble(store: Store, plan: Any, about: dict, lines: Lines, folder: Path) -> tuple[bytes, list[str]]:
+    """The bytes of a dataset in `folder`, and the files that hold what does not fit into it, which are there when this returns."""
     order = [run_id for run_id in dict.fromkeys(case.run_id for case in plan.cases) if run_id in lines]
     names = store.places(order)
     fits = store.bytes(order) <= table.LIMIT
-    own = {} if fits else {run_id: str(store.path(name).relative_to(store.out)) for run_id, name in names.items() if not name.startswith(BATCH)}
-    laid = Table(plan, None if fits else own)
+    own = {run_id: os.path.relpath(store.path(name), folder) for run_id, name in names.items() if not name.startswith(BATCH)}
+    laid = Table(plan, own, outside=not fits)
     for run_id, record in store.load_all(order, fields=fits):
         if isinstance(record, DamagedFile):
             file = store.path(names[run_id]).relative_to(store.out)
             laid.damaged(run_id, f"pending: {file} is damaged; `mpm verify` sets it aside, and the next sweep runs the point again")
         else:
             laid.add(record)
-    outside = shards.write(store, plan, about, laid)
+    outside = shards.write(store, plan, about, laid, folder)
     return written(laid, about, outside), sorted(set(outside))
 
 
 def dataset(plan: Any, about: dict, records: dict[str, Any]) -> bytes:
-    """The dataset of a plan from its records by run id."""
-    laid = Table(plan)
+    """The dataset of a plan from its records by run id, whose files lie where a `Store` puts them."""
+    laid = Table(plan, {run_id: f"points/{run_id[:2]}/{run_id}.nc" for run_id in records})
     for record in records.values():
         laid.add(record)
     return written(laid, about, [])

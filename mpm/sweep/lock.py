@@ -1,11 +1,13 @@
 """Lock: one writer a folder, held with flock in OUT/lock: the kernel releases it when its owner dies. The file says who holds it."""
 
 import contextlib
+import errno
 import fcntl
 import json
 import os
 import platform
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +54,25 @@ class Lock:
         with contextlib.suppress(OSError):  # the disk may fail by now: the next then hears of an owner that died, which does no harm
             os.ftruncate(self.descriptor, 0)
         os.close(self.descriptor)
+
+
+@contextlib.contextmanager
+def lock_where_possible(folder: Path, **more: Any) -> Iterator[bool]:
+    """The lock of a folder while this lasts; False where nothing can be written there, and nobody is at work."""
+    lock = Lock(folder, **more)
+    try:
+        lock.__enter__()
+    except OSError as error:
+        if error.errno not in (errno.EROFS, errno.EACCES, errno.EPERM):
+            raise
+        if (who := owner(folder)) is not None:
+            raise Refused(f"{folder} is in use by {said_owner(who)}; wait for it") from None
+        yield False
+        return
+    try:
+        yield True
+    finally:
+        lock.__exit__()
 
 
 def said_by(descriptor: int) -> dict | None:

@@ -5,6 +5,7 @@ so that no more than SHARD bytes of series are in memory at once.
 """
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,12 @@ from mpm.sweep.table import Table, described, with_axes
 SHARD = 2**28  # bytes of series in a shard
 
 
-def write(store: Store, plan: Any, about: dict, laid: Table) -> list[str]:
-    """The shards of a table that holds no series, if there are any: for each value along the first dimension the shard's file. Older ones are removed."""
-    folder = store.out / "series"
+def write(store: Store, plan: Any, about: dict, laid: Table, out: Path) -> list[str]:
+    """The shards of a table that holds no series, if there are any, in a folder of `out`: for each value along the first dimension the shard's file.
+
+    Older ones are removed.
+    """
+    folder = out / "series"
     if laid.series_over.keep or not laid.shape:
         remove(folder, 0)
         return []
@@ -44,7 +48,7 @@ def write(store: Store, plan: Any, about: dict, laid: Table) -> list[str]:
         file = folder / f"{number:04d}.nc"
         attributes = {"Conventions": "CF-1.11", "title": about["title"] or about["name"]}
         write_whole(file, seal(to_bytes({"/": group(laid, part, time, slice(begin, end))}, attributes), {}))
-        files += [str(file.relative_to(store.out))] * (end - begin)
+        files += [str(file.relative_to(out))] * (end - begin)
     remove(folder, len(set(files)))
     return files
 

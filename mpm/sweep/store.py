@@ -211,11 +211,11 @@ class Store:
         """What experiment.json says; None for a new folder."""
         return read_about(self.out / "experiment.json")
 
-    def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep") -> None:
+    def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep", join: bool = False) -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.
 
         Other values on the axes, or another set of axes, are the same experiment: points are shared by id. A folder that held a
-        `--smoke` run is taken over by the full one.
+        `--smoke` run is taken over by the full one. With `join`, what it says stays where it is of the same experiment and varies as much.
         """
         new = {
             "format": 2,
@@ -239,6 +239,8 @@ class Store:
                     "choose another folder with --out, or let this experiment have it with --rerun stale (runs what the change affects) or --rerun all; "
                     "finished points stay on disk either way"
                 )
+            if join and not changed and {*old["swept"]} >= {*swept}:
+                return
             if {name: old.get(name) for name in new if name != "versions"} == {name: new[name] for name in new if name != "versions"}:
                 return
         write_about(self.out / "experiment.json", new)

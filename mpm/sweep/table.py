@@ -28,10 +28,10 @@ def described(name: str, dims: tuple[str, ...], data: Any, **more: Any) -> Array
 
 
 class Table:
-    """`files`: paths by run id of the files that keep the fields, where those stay outside; None where they come in."""
+    """`files`: paths by run id of the points' files, which keep the fields where these stay `outside`, or do not fit together."""
 
-    def __init__(self, plan: Any, files: dict[str, str] | None = None):
-        self.plan, self.files = plan, files
+    def __init__(self, plan: Any, files: dict[str, str] | None = None, outside: bool = False):
+        self.plan, self.files, self.outside = plan, files or {}, outside
         self.dims = tuple(dim.name for dim in plan.dims)
         self.shape = tuple(dim.size for dim in plan.dims)
         self.count = math.prod(self.shape)
@@ -84,7 +84,7 @@ class Table:
         for name in TEXTS:
             self.text[name][place] = getattr(record, name)
         self.text["warnings"][place], self.flags[place] = "\n".join(record.warnings), flags(record.warnings)
-        if self.files is not None:
+        if self.outside or record.grid:
             self.text["file"][place] = self.files.get(record.run_id, "")
         if ok:
             self.numbers["steps"][place], self.numbers["wall_time"][place] = record.steps, record.wall_time
@@ -101,7 +101,6 @@ class Table:
             self.apart = self.apart or not same(self.axes, record.axes)
             if self.apart:
                 self.fields.drop()
-            self.text["file"][place] = self.text["file"][place] or f"points/{record.run_id[:2]}/{record.run_id}.nc"
         self.fields.add(place, record.snapshot_times, record.grid, ok)
         if len(record.row_size):
             kept = Record(record.run_id, record.status, snapshot_times=record.snapshot_times, particles=record.particles, row_size=record.row_size)
@@ -150,9 +149,9 @@ class Table:
     def grid(self) -> Group:
         """Fields on the grid."""
         group = Group()
-        if self.files is None and self.axes is None:
+        if not self.outside and self.axes is None:
             return group
-        if self.files is not None or self.apart:
+        if self.outside or self.apart:
             return self.elsewhere()
         time, columns = self.fields.laid()
         names = tuple(name for name in reversed(AXES) if name in self.axes)
@@ -166,7 +165,7 @@ class Table:
     def particles(self) -> Group:
         """Snapshots of particles, one after another."""
         group = Group()
-        if self.files is not None:
+        if self.outside:
             return self.elsewhere()
         if not self.rows:
             return group

@@ -15,7 +15,7 @@ from mpm.records.netcdf import DamagedFile, set_aside, unseal
 from mpm.sweep.api import collect_last, folder_plan, run_engine, signals
 from mpm.sweep.engine import Engine, Options
 from mpm.sweep.gather import Gather
-from mpm.sweep.lock import Lock, Refused
+from mpm.sweep.lock import Refused, lock_where_possible
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import BATCH, Store
 from mpm.sweep.tally import Due
@@ -76,7 +76,10 @@ def verify(out: Path, options: Options | None = None, reporter: Reporter | None 
     if not any(True for _ in files(out)):
         raise Refused(f"{out} holds no results; give the folder that `mpm sweep` or `mpm run` wrote")
     found = Found(out)
-    with Lock(out, jobs=options.jobs):
+    with lock_where_possible(out, jobs=options.jobs) as writable:
+        if not writable and not check:
+            reporter.note(f"{out} cannot be written: it is only looked at")
+        check = check or not writable
         found.left = 0 if check else Store(out).tidy()
         for kind, path in files(out):
             size, why = wrong(kind, path)
@@ -96,12 +99,13 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
             aside(out, one)
         found.stopped = "what the folder holds is not known any more: run `mpm sweep CONFIG --out` on it, which finds the points that are there"
         return
-    if not (out / "experiment.json").exists():  # of `mpm run`
+    if not (out / "experiment.json").exists():  # it was never there: an older `mpm run` wrote none
         for one in found.damaged:
             aside(out, one)
-        if any(one["what"] == "dataset" for one in found.damaged):
-            found.stopped = "`mpm run` makes run.nc again"
+        found.stopped = "the same `mpm run` makes run.nc again"
         return
+    run_lost = any(one["file"] == "run.nc" for one in found.damaged)
+    run_alone = (out / "run.nc").exists() and not any(one["file"] == "sweep.nc" for one in found.damaged)
     store, plan, points, *_ = folder_plan(out)
     names = [Path(one["file"]).stem if one["what"] == "point" else BATCH + Path(one["file"]).stem for one in found.damaged if one["what"] in ("point", "batch")]
     there = store.places(list(points.ids))
@@ -119,9 +123,9 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
         if found.due:
             run_engine(supervisor, options)
             found.ran = sum(run_id in lines for run_id in found.due)
-        if not supervisor.stopped:
+        if not supervisor.stopped and not (run_alone and not store.dataset.exists()):
             collect_last(Gather(store, plan, lines, reporter.note), supervisor)
-    found.stopped = supervisor.broken or supervisor.stopped
+    found.stopped = supervisor.broken or supervisor.stopped or ("the same `mpm run` makes run.nc again" if run_lost else "")
 
 
 def aside(out: Path, one: dict) -> None:

@@ -206,6 +206,6 @@ def test_a_sweep_that_left_without_a_dataset_names_none(tmp_path):
 
     counts = {"ok": 300, "pending": 1, "failed": 0, "timeout": 0, "killed": 0, "diverged": 0}
     left = Result(tmp_path, Lines([]), counts, 300, "interrupted", 130, 9.0, hurried=True)
-    said = words(left, None, "a.yaml")
+    said = words(left, None, "mpm sweep a.yaml")
     assert "300 ok, 1 pending; 300 run now" in said[0] and f"mpm collect {tmp_path}" in said[1] and said[2].startswith("1 point is left")
     assert summary(left, None)["dataset"] is None and not [line for line in said if line.endswith("sweep.nc")]

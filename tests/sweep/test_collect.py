@@ -165,7 +165,7 @@ def test_a_point_damaged_inside_is_pending_and_told(config, tmp_path):
 @pytest.mark.parametrize("kappa, status", [(0.2, 0), (17.0, 4), (13.0, 1)])
 def test_one_run_has_the_same_groups(config, kappa, status, monkeypatch):
     monkeypatch.setattr("mpm.sweep.engine.RUNNER", "fake_runner")
-    data, record, _ = run_one(load(config([kappa, 0.3], output=SNAPSHOTS)))
+    data, record = run_one(load(config([kappa, 0.3], output=SNAPSHOTS)))
     tree = tree_of(data)
     assert list(tree.children) == ["series", "grid", "particles"] and tree.status.item() == status == record.status
     assert np.isfinite(tree.temperature_mean.item()) == (status == 0) if status != 1 else "temperature_mean" not in tree
