@@ -2,7 +2,7 @@
 
 cases      `plan`: axes, zips, samples and lists of points -> cases with an id that depends on their content alone
 designs    Sobol, Latin hypercube, Halton and uniform samples
-api        what the shell and Python share: `execute`, `run_one`, `sweep`, `run`
+api        what the shell and Python share: `execute`, `run_one`, `sweep`, `run`; `alone` runs one point to a sweep's folder
 engine     hands out points, hears of them, retries, keeps the clock; knows no processes and no disk; `pace` sizes batches of tiny points
 executors  where points run: the interface, and `Serial`; `processes` has workers on this machine (`worker`), `cluster` has Dask's (`local`, `remote`)
 room       memory and disk that points may take; `tally`: which are missing, and how they are counted
