@@ -17,6 +17,7 @@ from mpm.follow import nearest, renumbered, sampled
 from mpm.memory import rows
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
+from mpm.total import reference as moving
 
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
@@ -146,7 +147,7 @@ class Recorder:
         if isinstance(scene.space, Axisymmetric):
             for share in (95, 99):
                 yield f"radius_{share}", radius_holding(0.01 * share, x[:, 0], V)
-        motion = sum(kinetic(scene.space, body.particles) for body in scene.bodies)
+        motion = sum(map(moving.kinetic, scene.references)) if scene.references else sum(kinetic(scene.space, body.particles) for body in scene.bodies)
         elastic, pressure, strain = 0.0, 0.0, 0.0
         for body in scene.bodies:
             e = strains(scene.space, body.particles.B)

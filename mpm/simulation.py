@@ -23,16 +23,17 @@ from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.order import Order
-from mpm.integrate.sharpen import FIELDS, correct, sharpened, specific
+from mpm.integrate.sharpen import correct, lost_to_grid
 from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
 from mpm.integrate.tears import tear_open
-from mpm.integrate.timestep import SUBSTEPS, Limits, limits
+from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.lanes import aligned
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
+from mpm.total.drive import advance_references, present_limits, show_all
 from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
@@ -76,10 +77,12 @@ class Scene:
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
     threads: int = 1  # that share the work of a large scene
+    references: tuple = ()  # mpm.total.Reference by body, in the total frame; none in the updated one
     order: Order = field(init=False)  # of the particles, while it runs
 
     def __post_init__(self):
         self.order = Order(self.space, self.bodies)
+        self.order.due = not self.references  # those have their order for good
 
 
 class Clock:
@@ -127,7 +130,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     """
     began = time.perf_counter()
     clock, recorder, guards = Clock(scene), Recorder(scene), Guards(scene)
-    buffers = work_arrays(scene)
+    buffers = None if scene.references else work_arrays(scene)
     result, before = outcome(COMPLETED), keeper.found if keeper is not None else None
     if before is not None:
         clock.recall(before["clock"])
@@ -135,6 +138,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         guards.recall(before["guards"])
         scene.order.recall(before["order"])
         fill(scene.bodies, before["bodies"])
+        fill(scene.references, before["references"])
     else:
         recorder.record(scene, clock)
         result = guards.frame(scene, clock, recorder.series)
@@ -143,7 +147,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         stop = beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale)
         if keeper is not None and keeper.due(stop):
             passed = {"spent": clock.spent + time.perf_counter() - began}
-            parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory(), "bodies": arrays(scene.bodies)}
+            parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory()}
+            parts |= {"bodies": arrays(scene.bodies), "references": arrays(scene.references)}
             keeper.save({"clock": vars(clock) | passed, **parts})
         return stop
 
@@ -151,14 +156,14 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         result = interval(scene, clock, recorder, guards, buffers, float(end), look)
         if not result.ok:
             break
-        scene.order.restore()
+        show_all(scene)
         recorder.record(scene, clock)
         result = guards.frame(scene, clock, recorder.series)
         if not result.ok:
             recorder.drop()
             break
         clock.output += 1
-    scene.order.restore()
+    show_all(scene)
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
     if guards.warned:
         run.facts["warnings"] = guards.warned
@@ -181,7 +186,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
     cut = clock.parts > 0
     if not cut:
         scene.order.refresh()
-        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        now = present_limits(scene, clock)
         pace = scene.heat_step or now.pace
         clock.start, clock.part = clock.time, 0
         clock.parts = max(1, math.ceil((end - clock.start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
@@ -196,7 +201,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
         result = march(scene, clock, guards, buffers, until, look)
         if not result.ok:
             return result
-        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        now = present_limits(scene, clock)
         clock.part += 1
     clock.parts = 0
     return guards.whole(scene, clock)
@@ -211,7 +216,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     for body, one in around:
         one.write(scene.space, body, clock.time, dt)
     if not all(one.steady for _, one in around):
-        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        now = present_limits(scene, clock)
     kind, stable = scene.heat.kind, now.substep() * scene.safety
     ratio = dt / stable * (1 - 1e-9)
     substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
@@ -244,12 +249,6 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     return outcome(COMPLETED)
 
 
-def lost_to_grid(scene: Scene, body, rows):
-    """What XPIC takes from the temperatures of a body in this heat step, and alpha at its start; None with other transfers."""
-    warm = scene.sharp and isinstance(body.thermal, Thermal)
-    return (specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)) if warm else None
-
-
 def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) -> None:
     """One block of `steps` steps of dt; clock.reports tells of it."""
     nodes, force, (boxes, blocks), _ = buffers
@@ -268,7 +267,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
     while until - clock.time > 1e-12 * until:
         if not (sound := guards.block(scene, clock)).ok:
             return sound
-        now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+        now = present_limits(scene, clock)
         step = scene.step or now.step() * scene.safety
         clock.first_step = clock.first_step or step
         if step < clock.first_step / UNDERFLOW:
@@ -282,7 +281,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)
-        advance_block(scene, clock, buffers, dt, block)
+        (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)
         clock.gather(dt)
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
         if failed is not None:

@@ -7,6 +7,7 @@ To add a rule: write it, list it in `RULES` with the items it is for.
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from mpm.config import rules_frame as framing
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
@@ -90,4 +91,8 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.clock, once),
     (point.output, once),
     (point.heating, each("materials")),
+    (framing.frame, once),
+    (framing.frame_wall, each("walls")),
+    (framing.frame_material, each("materials")),
+    (framing.frame_exact, once),
 ]

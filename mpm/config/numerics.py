@@ -146,6 +146,9 @@ class Method(Model):
     transfer: Transfer = doc(Apic(), description="transfer of velocity between particles and grid")
     temperature: Transfer = doc(Apic(), description="transfer of temperature")
     gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
+    frame: Annotated[Literal["updated", "total"], Choice()] = doc(
+        "updated", description="updated: particles carry the state over the grid; total: weights of the shape at the start, for bodies that do not flow far"
+    )
     locking: one_of("cure of locking", *LOCKING) | None = doc(None, description="for nearly incompressible bodies that move")
     bounds: one_of("keeper of bounds", *BOUNDS) | None = doc(None, description="temperatures between those of body and surroundings, for bodies that move")
     precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"

@@ -171,3 +171,9 @@ def correct(thermal, alpha, change):
     for i in range(len(change)):
         old = thermal.theta[i]
         thermal.theta[i] = old + rise(thermal.alpha, thermal.zero + old, alpha[i] * change[i])
+
+
+def lost_to_grid(scene, body, rows):
+    """What XPIC takes from the temperatures of a body in this heat step, and alpha at its start; None with other transfers."""
+    warm = scene.sharp and isinstance(body.thermal, Thermal)
+    return (specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)) if warm else None

@@ -42,6 +42,7 @@ from mpm.state import (
     Thermal,
     Volume,
 )  # fmt: skip
+from mpm.total.reference import project
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
 
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
@@ -219,10 +220,14 @@ def build(experiment, exact=None) -> Scene:
     space = grid_space(experiment)
     zero = next(iter(experiment.bodies.values())).temperature
     scheme, blend, affine, sharp = schemes(experiment)
-    D = experiment.grid.directions
-    times = output_times(experiment)
-    bodies, surroundings, seams = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
-    refuse_idle(experiment, seams)
+    times, references = output_times(experiment), ()
+    if experiment.method.frame == "total":
+        from mpm.scene.total import total_bodies  # which asks this module for laws
+        bodies, references = total_bodies(experiment, space)
+        surroundings = seams = (None,) * len(names)
+    else:
+        bodies, surroundings, seams = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
+        refuse_idle(experiment, seams)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
             around.write(space, body, 0.0, 0.0)
@@ -231,10 +236,11 @@ def build(experiment, exact=None) -> Scene:
     if experiment.method.locking is not None:
         own = float(experiment.method.locking.own)
         bodies = tuple(body._replace(locking=Average(*np.zeros((2, math.prod(extents(space)))), own)) for body in bodies)
-    heat = heat_method(experiment)
     if isinstance(exact, Motion):
         first, exact = exact.begin(bodies[0])
         bodies = (first, *bodies[1:])
+    for body, reference in zip(bodies, references, strict=False):
+        project(space, reference, body.particles)
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),
@@ -243,8 +249,9 @@ def build(experiment, exact=None) -> Scene:
         bodies=bodies,
         surroundings=surroundings,
         seams=seams,
+        references=references,
         walls=wall_kinds(experiment),
-        gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * D),
+        gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * experiment.grid.directions),
         blend=blend,
         affine=affine,
         sharp=sharp,
@@ -254,7 +261,7 @@ def build(experiment, exact=None) -> Scene:
         step=None if experiment.time.step == "auto" else experiment.time.step,
         safety=experiment.time.safety,
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
-        heat=heat,
+        heat=heat_method(experiment),
         scale=scale,
         watch=watch(experiment, times, exact),
     )

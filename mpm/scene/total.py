@@ -1,0 +1,156 @@
+"""Bodies of a config in the total frame: points, nodes, what walls hold of them, tractions (mpm.total)."""
+
+import math
+
+import numpy as np
+
+from mpm.boundary import CONTACT, STICK, directions, extents
+from mpm.diagnostics import nodal
+from mpm.integrate.timestep import stiffest
+from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
+from mpm.scene.build import SIDES, STRAINS, elastic_law, spin_tensor, wall_kinds
+from mpm.scene.law import law
+from mpm.scene.quadrature import knots, points
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import on_side, shape
+from mpm.state import PAD, Body, Isothermal, NoExchange, NoExpansion, NoHeating, Particles
+from mpm.total.reference import Reference, new_nodes
+from mpm.total.step import courant_of
+
+NEAR = 1.5  # cells: what is nearer to a wall shares nodes with its mirror
+FACING = 0.1  # of a unit normal
+FLUSH = 1e-9  # of the domain
+
+
+def total_bodies(experiment, space) -> tuple[tuple, tuple]:
+    """(bodies, references)."""
+    return tuple(zip(*(total_body(experiment, name, space) for name in experiment.bodies), strict=True))
+
+
+def total_body(experiment, name: str, space) -> tuple[Body, Reference]:
+    """(body, reference) of one body."""
+    config, grid, method = experiment.bodies[name], experiment.grid, experiment.method
+    material, dtype, D = experiment.materials[config.material], np.dtype(method.precision), grid.directions
+    outline = shape(config.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
+    lower, upper = outline.bounds()
+    radial = grid.dimension == "axisymmetric"
+    if radial:
+        lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
+    for low, high, size in zip(lower, upper, grid.size, strict=True):
+        if low < -1e-9 * size or high > size * (1 + 1e-9):
+            raise SceneError(f"{name} reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
+    x, V, surface = points(outline, knots(lower, upper, grid.cell, grid.basis), method.particles, radial)
+    order = np.lexsort(np.floor(x / grid.cell + 0.5 + 1e-9).T[::-1])  # points that share nodes follow one another
+    x, V = x[order], V[order]
+    elastic = elastic_law(material.elastic)
+    flow = NoFlow()
+    if material.flow is not None:
+        ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
+        flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+    velocity, slope = np.zeros((len(x), D)), np.zeros((len(x), D, D))
+    if config.velocity is not None:
+        velocity += config.velocity
+    if config.angular_velocity is not None:
+        spin = spin_tensor(config.angular_velocity, D)
+        velocity += (x - np.average(x, axis=0, weights=V)) @ spin.T
+        slope += spin
+    arrays = (x, velocity, slope, np.zeros((len(x), STRAINS[D])), np.ones(len(x)), material.density * V, V)
+    particles = Particles(*(np.array(a, dtype=dtype) for a in arrays))
+    body = Body(particles, Isothermal(config.temperature), NoExchange(), elastic, flow, NoExpansion(), NoHeating())
+    return body, reference_of(experiment, name, space, body, surface, lower, upper)
+
+
+def reference_of(experiment, name: str, space, body, surface, lower, upper) -> Reference:
+    """Nodes, walls and loads of a body at rest in its reference shape."""
+    D, n, dtype, particles = experiment.grid.directions, math.prod(extents(space)), body.particles.x.dtype, body.particles
+    walls = bonded(experiment, name, surface, lower, upper)
+    m = weigh(space, particles.x.astype(float), particles.m.astype(float)[:, None], n)[:, 0]
+    touched = np.flatnonzero(m > 0)
+    ghost, image, sign, held = mirrors(space, walls, touched)
+    for g, i in zip(ghost, image, strict=True):
+        m[i] += m[g]
+    active = np.setdiff1d(np.union1d(touched, image), ghost)
+    touched = np.union1d(touched, np.concatenate([ghost, image]))
+    load, ramp, drag = loads(experiment, name, space, surface, n, ghost, image, sign)
+    X = particles.x.copy()
+    plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
+    courant = courant_of(space, X.astype(float), *stiffest(body))
+    m, load, sign = (np.ascontiguousarray(a, dtype=dtype) for a in (m, load, sign))
+    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, held, np.zeros(1), ramp, drag, courant)
+
+
+def bonded(experiment, name: str, surface, lower, upper) -> np.ndarray:
+    """(3, 2) kinds of the walls that the body lies on, CONTACT for those that it does not: they hold nothing of it."""
+    kinds, grid = wall_kinds(experiment), experiment.grid
+    bound = np.full((3, 2), CONTACT)
+    for number, side in enumerate(SIDES[grid.dimension]):
+        axis, end = number // 2, number % 2
+        size, place = grid.size[axis], grid.size[axis] if end else 0.0
+        gap = np.abs(surface.x[:, axis] - place)
+        facing = (surface.normal[:, axis] if end else -surface.normal[:, axis]) > FACING
+        if abs((upper if end else lower)[axis] - place) <= FLUSH * size:
+            bound[axis, end] = kinds[axis, end]
+        near = facing & (gap > FLUSH * size) & (gap < NEAR * grid.cell)
+        if bound[axis, end] != CONTACT and near.any():
+            raise SceneError(
+                f"{name} lies on the {side} wall, and a part of it is {gap[near].min():.3g} m away from that wall: nearer than {NEAR:g} cells, it would be "
+                "held as if it lay on it too; smaller cells, or method.frame: updated"
+            )
+    return bound
+
+
+def mirrors(space, walls, touched):
+    """(ghost (G,), image (G,), sign (G, D), held (H, 2)) of the walls: directions in turn, so that a corner is folded twice."""
+    counts, D = extents(space), directions(space)
+    nodes, ghost, image, sign, held = touched, [], [], [], []
+    for axis in range(D):
+        for side in range(2):
+            kind = walls[axis, side]
+            if kind == CONTACT:
+                continue
+            wall = PAD if side == 0 else counts[axis] - 1 - PAD
+            holds = [c for c in range(D) if kind == STICK or c == axis]
+            index = np.stack(np.unravel_index(nodes, counts), axis=-1)
+            beyond = (index[:, axis] < wall) if side == 0 else (index[:, axis] > wall)
+            inside = index[beyond]
+            inside[:, axis] = 2 * wall - inside[:, axis]
+            ghost.append(nodes[beyond])
+            image.append(np.ravel_multi_index(tuple(inside.T), counts))
+            sign.append(np.tile([-1.0 if c in holds else 1.0 for c in range(D)], (len(inside), 1)))
+            on = nodes[index[:, axis] == wall]
+            held += [np.stack([on, np.full(len(on), c)], axis=-1) for c in holds]
+            nodes = np.union1d(nodes[~beyond], image[-1])
+    none = np.zeros(0, np.int64)
+    pairs = np.unique(np.concatenate([np.zeros((0, 2), np.int64), *held]), axis=0)
+    return np.concatenate([none, *ghost]), np.concatenate([none, *image]), np.concatenate([np.zeros((0, D)), *sign]), pairs
+
+
+def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
+    """sum w values on the nodes (n, C) of points x (Q, D) with values (Q, C)."""
+    found, x = np.zeros((values.shape[1], n)), np.ascontiguousarray(x, dtype=float)
+    for row, value in zip(found, values.T, strict=True):
+        nodal(space, x, np.ascontiguousarray(value, dtype=float), row)
+    return found.T
+
+
+def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> tuple[np.ndarray, float, float]:
+    """(nodal forces at full load (n, D), or (0, D) without any; ramp; rate of the drag)."""
+    D, entries = experiment.grid.directions, [entry for entry in experiment.loads if entry.of == name]
+    tractions = [entry for entry in entries if entry.traction is not None]
+    drag = float(sum(entry.drag.rate for entry in entries if entry.drag is not None))
+    if not tractions:
+        return np.zeros((0, D)), 0.0, drag
+    ramps = {entry.traction.ramp for entry in tractions}
+    if len(ramps) > 1:
+        raise SceneError(f"the tractions on {name} have ramps of {', '.join(f'{ramp:g} s' for ramp in sorted(ramps))}: give them the same")
+    x, force = [], []
+    for entry in tractions:
+        pieces = on_side(surface.normal, entry.side)
+        if not pieces.any():
+            raise SceneError(f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
+        x.append(surface.x[pieces])
+        force.append(surface.w[pieces, None] * np.array(entry.traction.nominal))
+    load = weigh(space, np.concatenate(x), np.concatenate(force), n)
+    for k in range(len(ghost)):
+        load[image[k]] += sign[k] * load[ghost[k]]
+    return load, float(max(ramps)), drag

@@ -1,0 +1,155 @@
+"""The state of a body in the total frame, and what its particles show of it.
+
+The particles of the body (mpm.state.Particles) hold what records want: x, v, C (gradient of velocity in the present shape), B, J. Only B, J and what heat and
+flow remember are used by steps; x, v and C are written by `show`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mpm.jit import kernel
+from mpm.lanes import aligned
+from mpm.transfer import CHUNK, Bspline, columns, gather, lay_down, new_chunk, scatter
+
+
+class Reference(NamedTuple):
+    """Nodal state of one body, and weights by the points X of its reference shape.
+
+    Mirrors: node `ghost` outside a wall that the body is bonded to carries `sign` times what its `image` inside does, by direction.
+    """
+
+    X: np.ndarray  # (N, D) reference positions of the particles [m]
+    plastic: np.ndarray  # (N, K) inverse plastic metric F_p^-1 F_p^-T less the identity; (0, K) where nothing flows [-]
+    u: np.ndarray  # (n, columns(D)) displacement [m]; further columns unused
+    v: np.ndarray  # (n, columns(D)) velocity [m/s]
+    f: np.ndarray  # (n, columns(D)) scratch of one step: force of the stress [N]
+    m: np.ndarray  # (n,) mass [kg], those of ghosts on their images
+    load: np.ndarray  # (n, D) force of the tractions at full load [N]; (0, D) without
+    touched: np.ndarray  # nodes that a particle sees
+    active: np.ndarray  # those of them that are no ghosts
+    ghost: np.ndarray  # (G,)
+    image: np.ndarray  # (G,)
+    sign: np.ndarray  # (G, D)
+    held: np.ndarray  # (H, 2) (node, direction) that a wall holds
+    t: np.ndarray  # (1,) time [s]
+    ramp: float  # time to full load [s]
+    drag: float  # rate of the drag [1/s]
+    courant: float  # largest stable step in h sqrt(R0/(D lam + 2 mu)), at rest
+
+
+@kernel
+def mirror(nodes, reference):
+    """Continue nodal values to the ghosts, the last first: a ghost may be the image of another."""
+    ghost, image, sign = reference.ghost, reference.image, reference.sign
+    for k in range(len(ghost) - 1, -1, -1):
+        for c in range(sign.shape[1]):
+            nodes[ghost[k], c] = sign[k, c] * nodes[image[k], c]
+
+
+@kernel
+def fold(nodes, reference):
+    """Add what ghosts carry to their images."""
+    ghost, image, sign = reference.ghost, reference.image, reference.sign
+    for k in range(len(ghost)):
+        for c in range(sign.shape[1]):
+            nodes[image[k], c] += sign[k, c] * nodes[ghost[k], c]
+
+
+@kernel
+def hold(nodes, reference):
+    """Nothing moves where a wall holds it."""
+    for k in range(reference.held.shape[0]):
+        nodes[reference.held[k, 0], reference.held[k, 1]] = 0.0
+
+
+@kernel
+def project(space, reference, particles):
+    """Nodal velocities from those of the particles and their slopes: m_i v_i = sum m w (v + C (x_i - X)); an affine motion comes out as it is."""
+    X, D, v = reference.X, reference.X.shape[1], reference.v
+    chunk, gradient = new_chunk(D, reference.f, True, False), Bspline()
+    for first in range(0, X.shape[0], CHUNK):
+        count = min(CHUNK, X.shape[0] - first)
+        lay_down(X, first, count, chunk.place)
+        for p in range(count):
+            m = particles.m[first + p]
+            chunk.m[p] = m
+            for c in range(D):
+                chunk.a[c, p] = m * particles.v[first + p, c]
+                for d in range(D):
+                    chunk.A[c, d, p] = m * particles.C[first + p, c, d]
+        for p in range(count, CHUNK):
+            chunk.m[p] = 0.0
+            chunk.a[:, p] = 0.0
+            chunk.A[:, :, p] = 0.0
+        scatter(space, gradient, X, first, chunk, count, v, chunk.reach)
+    fold(v, reference)
+    for n in reference.active:
+        for c in range(D):
+            v[n, c] /= reference.m[n]
+        for c in range(D, v.shape[1]):
+            v[n, c] = 0.0
+    hold(v, reference)
+
+
+@kernel
+def show(space, particles, reference):
+    """x, v and C of the particles: position, velocity and its gradient in the present shape."""
+    X, D = reference.X, reference.X.shape[1]
+    chunk, gradient, F = new_chunk(D, reference.f, True, False), Bspline(), np.zeros((CHUNK, D, D))
+    mirror(reference.u, reference)
+    mirror(reference.v, reference)
+    for first in range(0, X.shape[0], CHUNK):
+        count = min(CHUNK, X.shape[0] - first)
+        lay_down(X, first, count, chunk.place)
+        gather(space, gradient, X, first, chunk, count, reference.u)
+        for p in range(count):
+            for c in range(D):
+                particles.x[first + p, c] = X[first + p, c] + chunk.v[c, p]
+                for d in range(D):
+                    F[p, c, d] = chunk.L[c, d, p]
+                F[p, c, c] += 1.0
+        gather(space, gradient, X, first, chunk, count, reference.v)
+        for p in range(count):
+            inverse = np.linalg.inv(F[p])
+            for c in range(D):
+                particles.v[first + p, c] = chunk.v[c, p]
+                for d in range(D):
+                    rate = 0.0
+                    for k in range(D):
+                        rate += chunk.L[c, k, p] * inverse[k, d]
+                    particles.C[first + p, c, d] = rate
+
+
+def gradients(space, reference) -> np.ndarray:
+    """F - 1 of every particle (N, D, D)."""
+    out = np.zeros((*reference.X.shape, reference.X.shape[1]))
+    mirror(reference.u, reference)
+    displacement_gradient(space, reference, out)
+    return out
+
+
+@kernel
+def displacement_gradient(space, reference, out):
+    """Fill out (N, D, D) with sum u grad_X w."""
+    X, D = reference.X, reference.X.shape[1]
+    chunk, gradient = new_chunk(D, reference.f, True, False), Bspline()
+    for first in range(0, X.shape[0], CHUNK):
+        count = min(CHUNK, X.shape[0] - first)
+        lay_down(X, first, count, chunk.place)
+        gather(space, gradient, X, first, chunk, count, reference.u)
+        for p in range(count):
+            for c in range(D):
+                for d in range(D):
+                    out[first + p, c, d] = chunk.L[c, d, p]
+
+
+def kinetic(reference) -> float:
+    """1/2 sum m_i v_i^2 [J]."""
+    D, n = reference.X.shape[1], reference.active
+    return float(0.5 * np.sum(reference.m[n, None].astype(float) * reference.v[n, :D].astype(float) ** 2))
+
+
+def new_nodes(n: int, D: int, dtype) -> tuple[np.ndarray, ...]:
+    """Displacement, velocity and force of n nodes."""
+    return tuple(aligned((n, columns(D)), dtype) for _ in range(3))

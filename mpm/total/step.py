@@ -1,0 +1,133 @@
+"""The mechanical step of a body in the total frame: velocity Verlet on the nodes, and how long it may be.
+
+v <- ((1 - dt d/2) v + dt/2 a) twice a step, in the middle at once, a = (f + s(t) load)/m + g,  d: rate of the drag, the second half implicit: no limit from it
+u <- u + dt v
+f = -sum V0 P grad_X w from F(u); walls hold nodes, and what lies behind them mirrors what is inside
+
+Largest stable step, at rest: frequencies are below those of single particles on their own masses (Fried 1972, for elements),
+    omega^2 <= max_p T_p (D lam + 2 mu)/R0,   T_p = largest of sum_i (d_k w_ip)^2/w_ip over directions k,   dt < 2/omega.
+Quadratic splines have T_p h^2 = 4.5 at Gauss points of whole spans and at most 6 at cut ones, so 2/omega is 0.94 to 0.82 h sqrt(R0/(D lam + 2 mu));
+compressed or stressed material is stiffer, in the reference shape by one over the squared stretch. SHARE of it is taken.
+Errors       order 2 in time and in the cell; the energy of a free mode omega swings by (omega dt)^2/4, without drift
+Fails when   waves shorter than two cells matter: nothing damps them
+"""
+
+import numpy as np
+
+from mpm.basis import stencil
+from mpm.boundary import directions
+from mpm.integrate.load import share
+from mpm.integrate.strain import CODE, STEP, STRAIN
+from mpm.jit import kernel
+from mpm.state import PAD, Axisymmetric
+from mpm.total.reference import fold, hold, mirror
+from mpm.total.strain import answer_all
+from mpm.transfer import CHUNK, Bspline, gather, lay_down, new_chunk, scatter
+
+SHARE = 0.9  # of the largest stable step
+
+
+@kernel
+def advance_total(space, body, reference, gravity, dt, steps, report):
+    """`steps` steps of dt of one body; report (REPORT,): integrate/strain.py, its STRAIN such that 1 - STRAIN is how much stiffer than at rest it is."""
+    chunk, x, begun = new_chunk(gravity.shape[0], reference.f, True, False), 0.5 * dt * reference.drag, report[STRAIN]
+    squeeze = force_all(space, body, reference, chunk, 0.0 * dt, report)
+    for step in range(steps):
+        if report[CODE] == 0.0:
+            opening = step == 0
+            kick(reference, gravity, 1.0 - x if opening else (1.0 - x) / (1.0 + x), 0.5 * dt if opening else dt / (1.0 + x))
+            drift(reference, dt)
+            squeeze = max(squeeze, force_all(space, body, reference, chunk, dt, report))
+            report[STEP] = step
+    kick(reference, gravity, 1.0 / (1.0 + x), 0.5 * dt / (1.0 + x))
+    report[STRAIN] = min(begun, 1.0 - (1.0 - min(report[STRAIN], 0.0)) * squeeze)
+
+
+@kernel
+def kick(reference, gravity, keep, push):
+    """v <- keep v + push a."""
+    f, v, m, load, D = reference.f, reference.v, reference.m, reference.load, gravity.shape[0]
+    now = push * share(reference.t[0], reference.ramp)
+    for n in reference.active:
+        inverse = 1.0 / m[n]
+        for c in range(D):
+            v[n, c] = keep * v[n, c] + push * (f[n, c] * inverse + gravity[c])
+        if load.shape[0] > 0:
+            for c in range(D):
+                v[n, c] += now * load[n, c] * inverse
+    hold(v, reference)
+
+
+@kernel
+def drift(reference, dt):
+    """u <- u + dt v, ghosts too; time goes on."""
+    u, v = reference.u, reference.v
+    for n in reference.active:
+        for c in range(reference.X.shape[1]):
+            u[n, c] += dt * v[n, c]
+    mirror(u, reference)
+    reference.t[0] += dt
+
+
+@kernel
+def force_all(space, body, reference, chunk, dt, report):
+    """Forces of the present displacement on to the nodes, flow and heating of a step dt behind it; returns the squeeze."""
+    X, f, gradient, squeeze = reference.X, reference.f, Bspline(), 1.0
+    for n in reference.touched:
+        for c in range(f.shape[1]):
+            f[n, c] = 0.0
+    for first in range(0, X.shape[0], CHUNK):
+        count = min(CHUNK, X.shape[0] - first)
+        lay_down(X, first, count, chunk.place)
+        gather(space, gradient, X, first, chunk, count, reference.u)
+        squeeze = max(squeeze, answer_all(space, body, reference, chunk, first, count, dt, report))
+        if report[CODE] != 0.0:
+            return squeeze
+        scatter(space, gradient, X, first, chunk, count, f, chunk.reach)
+    fold(f, reference)
+    return squeeze
+
+
+@kernel
+def spread_of(space, X):
+    """Largest sum (d_k w)^2/w of any point and direction, and of the hoop where there is one [1/m2]: T of the head."""
+    most, D, inverse = 0.0, X.shape[1], 1.0 / space.h
+    for i in range(X.shape[0]):
+        for a in range(D):
+            _, w, g, _, _ = stencil(space.basis, X[i, a] * inverse)
+            total = 0.0
+            for k in range(len(w)):
+                if w[k] > 0.0:
+                    total += g[k] * g[k] / w[k]
+            most = max(most, total * inverse * inverse)
+    return most
+
+
+@kernel
+def hoop_of(space, X):
+    """Largest sum w~^2/(w R^2) of any point, w~ the weights with the axis' mirror folded on to them [1/m2]."""
+    most, inverse = 0.0, 1.0 / space.h
+    for i in range(X.shape[0]):
+        first, w, _, _, _ = stencil(space.basis, X[i, 0] * inverse)
+        total = 0.0
+        for k in range(len(w)):
+            node, odd, even = first + k, w[k], w[k]
+            if node <= PAD:
+                continue
+            for j in range(len(w)):
+                if first + j == 2 * PAD - node:
+                    odd -= w[j]
+                    even += w[j]
+            if even > 0.0:
+                total += odd * odd / even
+        most = max(most, total / (X[i, 0] * X[i, 0]))
+    return most
+
+
+def courant_of(space, X: np.ndarray, lam: float, mu: float) -> float:
+    """The largest stable step at rest, SHARE of it, in h sqrt(R0/(D lam + 2 mu))."""
+    D, T = directions(space), spread_of(space, X)
+    stiff = D * lam + 2 * mu
+    if isinstance(space, Axisymmetric):
+        T, stiff = max(T, hoop_of(space, X)), 3 * lam + 2 * mu
+    return float(SHARE * 2 / np.sqrt(T) / space.h * np.sqrt((D * lam + 2 * mu) / stiff))
