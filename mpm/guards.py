@@ -38,7 +38,7 @@ class Guards:
 
     def __init__(self, scene):
         over = ROUNDING if scene.repair else SLOPES if scene.blend == 1.0 and not scene.sharp else NOISE
-        self.data = [Data(body, around, over) for body, around in zip(scene.bodies, scene.surroundings or (None,) * len(scene.bodies), strict=True)]
+        self.data = [Data(body, around, over) for body, around in zip(scene.bodies, scene.surroundings, strict=True)]
         self.judged = all(
             isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies
         ) and not any(len(reference.load) for reference in scene.references)

@@ -81,6 +81,7 @@ class Scene:
     order: Order = field(init=False)  # of the particles, while it runs
 
     def __post_init__(self):
+        self.surroundings = self.surroundings or (None,) * len(self.bodies)
         self.order = Order(self.space, self.bodies)
         self.order.due = not self.references  # those have their order for good
 
@@ -92,8 +93,7 @@ class Clock:
         self.time, self.steps, self.heat_steps = 0.0, 0, 0
         self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
-        self.exchanged = self.local = self.dissipated = 0.0
-        self.repaired = self.unrepaired = 0.0
+        self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = 0.0
         self.first_step: float | None = None
         self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
         self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
@@ -209,10 +209,10 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
 
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
     """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
-    if not now.heat:
+    around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
+    if not now.heat and not around:  # without conduction a given flux still heats
         return outcome(COMPLETED)
     tear_open(scene)
-    around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=False) if one is not None]
     for body, one in around:
         one.write(scene.space, body, clock.time, dt)
     if not all(one.steady for _, one in around):
@@ -221,24 +221,25 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     ratio = dt / stable * (1 - 1e-9)
     substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
-    clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) > 1 else next(iter(now.heat))) if kind == "explicit" else None
-    for body in scene.bodies:
-        lost = lost_to_grid(scene, body, buffers[3])
+    clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
+    for body, one in zip(scene.bodies, scene.surroundings, strict=True):
+        walls = scene.walls if one is None else one.mirrors(scene.space, body, scene.walls)
+        lost = lost_to_grid(scene, body, buffers[3], walls)
         between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
         if implicit:
-            gained, count = heat_implicit(scene.space, body, buffers[3], scene.walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
+            gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, body, buffers[3], scene.walls, dt, substeps, scene.blend, scene.affine)
+            gained = heat_chebyshev(scene.space, body, buffers[3], walls, dt, substeps, scene.blend, scene.affine)
         else:
-            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], scene.walls, dt, substeps, scene.blend, scene.affine)
+            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], walls, dt, substeps, scene.blend, scene.affine)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)
         if between is not None:
-            moved, left = keep_between(scene.space, body, buffers[3], scene.walls, *between)
+            moved, left = keep_between(scene.space, body, buffers[3], walls, *between)
             clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
     clock.heat_steps += 1
     if implicit:
@@ -275,9 +276,8 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         left = until - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
         dt, block = left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count)
-        binding = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
-        if count == 1 and left < step * (1 - 1e-9):
-            binding = "heat pace or output"
+        cut = count == 1 and left < step * (1 - 1e-9)
+        binding = "heat pace or output" if cut else "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)

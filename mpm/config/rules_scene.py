@@ -136,6 +136,24 @@ def surface(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
                 )
 
 
+def conducts(experiment: Any, name: str) -> bool:
+    """Whether a material passes heat inwards: not with kappa = 0. A material point has one temperature, and no kappa."""
+    kappa = experiment.materials[name].heat.kappa
+    return experiment.grid.dimension == 0 or kappa.kind != "constant" or kappa.value > 0
+
+
+def surface_conducts(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """What depends on the temperature of the surface needs conduction behind it; a given flux does not."""
+    name = experiment.bodies[item.of].material
+    if experiment.materials[name].heat is None or conducts(experiment, name):
+        return
+    acts = {"convection": item.convection and item.convection.beta, "fixed": item.fixed, "radiation": item.radiation and item.radiation.emissivity}
+    for key, acting in acts.items():
+        if acting:
+            said = f"{name!r} conducts no heat (kappa = 0): its surface would be as warm as what it meets at once, and pass nothing on"
+            yield Finding(("surfaces", index, key), said, "a kappa above 0, or only a flux", on_key=True)
+
+
 def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     sides = SURFACE_SIDES[experiment.grid.dimension]
     if item.side not in sides:
@@ -193,6 +211,11 @@ def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     elif item.heat is not None and not heats(experiment):
         said = "no body has heat, so nothing can be exchanged"
         yield Finding(("walls", side, item.kind, "heat"), said, "a heat section in the material of a body", on_key=True)
+    elif item.heat is not None and item.heat.beta > 0:
+        for name in sorted({body.material for body in experiment.bodies.values()}):
+            if experiment.materials[name].heat is not None and not conducts(experiment, name):
+                said = f"{name!r} conducts no heat (kappa = 0), so it can take none from the wall"
+                yield Finding(("walls", side, item.kind, "heat"), said, f"a kappa above 0 in materials.{name}", on_key=True)
 
 
 def mechanics(experiment: Any) -> Iterator[Finding]:

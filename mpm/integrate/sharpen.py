@@ -173,7 +173,7 @@ def correct(thermal, alpha, change):
         thermal.theta[i] = old + rise(thermal.alpha, thermal.zero + old, alpha[i] * change[i])
 
 
-def lost_to_grid(scene, body, rows):
+def lost_to_grid(scene, body, rows, walls):
     """What XPIC takes from the temperatures of a body in this heat step, and alpha at its start; None with other transfers."""
     warm = scene.sharp and isinstance(body.thermal, Thermal)
-    return (specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], scene.walls, scene.sharp)) if warm else None
+    return (specific(body.thermal), sharpened(scene.space, body, rows[:FIELDS], walls, scene.sharp)) if warm else None

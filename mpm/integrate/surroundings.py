@@ -3,6 +3,10 @@
 Where nothing changes in time or place they are written once. beta is capped at PENALTY kappa/h, so beta = inf is a fixed temperature and the
 answer is monotone in beta. A hot wall replaces whatever else acts on the pieces that touch it: within half a cell of its plane and facing it
 (outward normal within 60 degrees of the wall's).
+
+For heat, a mirror wall through which something is exchanged is a free surface: a mirror would make the temperature level off where a flux acts. An insulated
+one stays a mirror. A slab that exchanges through its side on a stick wall, Bi = 10, Fo = 0.1, error of the mean at 16, 32, 64 cells: 5.0, 2.5, 1.2 % where that
+side is mirrored, 0.34, 0.06, 0.003 % where it is free (tests/integrate/test_heat_through_walls.py).
 """
 
 from dataclasses import dataclass, field
@@ -10,11 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from mpm.boundary import extents
+from mpm.boundary import CONTACT, extents
 from mpm.heat.programmes import at
 from mpm.state import PAD, Radiation
 
 REACH, FACING = 0.5, 0.5  # cells; cosine
+NEAR = 4.0  # cells from a particle to its pieces, at most
+MIRRORED = 1.0  # cells from a mirror wall in which a particle reaches the nodes behind it, at most (cubic splines)
 
 
 @dataclass(frozen=True)
@@ -85,17 +91,36 @@ class Surroundings:
         """beta, at most the penalty: what is finite and below it acts as it is given."""
         return min(beta, self.most)
 
+    def mirrors(self, space, body, kinds: np.ndarray) -> np.ndarray:
+        """Kinds of the walls (3, 2) for heat: CONTACT, which mirrors nothing, where a wall is hot, and where pieces that exchange something lie on it."""
+        surface, found = body.surface, kinds.copy()
+        for wall in self.walls:
+            found[wall.axis, wall.side] = CONTACT
+        acting = (surface.beta > 0) | (surface.flux != 0)
+        if isinstance(surface.radiation, Radiation):
+            acting |= surface.radiation.emissivity > 0
+        for axis in range(body.particles.x.shape[1]):
+            for side in range(2):
+                if found[axis, side] != CONTACT and np.any(acting[facing(space, body, axis, side, MIRRORED)]):
+                    found[axis, side] = CONTACT
+        return found
+
     def touch(self, wall: HotWall, space, body, start: float, dt: float) -> None:
         """The pieces at a hot wall exchange with it alone."""
-        surface, x = body.surface, body.particles.x
-        F = surface.F[surface.row[surface.owner]].astype(float)
-        place = x[surface.owner].astype(float) + np.einsum("sij,sj->si", F, surface.offset)
-        normal = np.einsum("sji,sj->si", np.linalg.inv(F), surface.area)
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)  # a face that is shut has no area
-        out = 1.0 if wall.side else -1.0
-        plane = (extents(space)[wall.axis] - 1 - 2 * PAD) * space.h if wall.side else 0.0
-        here = (out * (plane - place[:, wall.axis]) < REACH * space.h) & (out * normal[:, wall.axis] > FACING)
+        surface, here = body.surface, facing(space, body, wall.axis, wall.side, REACH)
         first, last = (at(wall.temperature, t) - self.zero for t in (start, start + dt))
         surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = self.cap(wall.beta), first, last - first, 0.0
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[here] = 0.0
+
+
+def facing(space, body, axis: int, side: int, within: float) -> np.ndarray:
+    """Numbers of the pieces at most `within` cells from a wall's plane that face it."""
+    surface, x = body.surface, body.particles.x
+    out, plane = (1.0, (extents(space)[axis] - 1 - 2 * PAD) * space.h) if side else (-1.0, 0.0)
+    some = np.flatnonzero(out * (plane - x[surface.owner, axis]) < (within + NEAR) * space.h)
+    F = surface.F[surface.row[surface.owner[some]]].astype(float)
+    place = x[surface.owner[some], axis] + np.einsum("sj,sj->s", F[:, axis], surface.offset[some])
+    normal = np.einsum("sji,sj->si", np.linalg.inv(F), surface.area[some])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)  # a face that is shut has no area
+    return some[(out * (plane - place) < within * space.h) & (out * normal[:, axis] > FACING)]

@@ -7,7 +7,7 @@ import numpy as np
 from mpm.heat.local import temperature, thermal_stress
 from mpm.jit import kernel
 from mpm.materials import energy, stress, warmed
-from mpm.outcome import COMPLETED, INVERTED, NON_FINITE, OVERSTRETCHED
+from mpm.outcome import COMPLETED, INVERTED, MAX_PRINCIPLE, NON_FINITE, OVERSTRETCHED
 from mpm.point.heat import above, content, datum, exchange
 from mpm.point.pick import pick
 from mpm.point.state import (
@@ -149,6 +149,9 @@ def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
         swell = one.strain[0] + one.strain[1] + one.strain[2]
         if not math.isfinite(swell) or not math.isfinite(theta):
             progress.code[i], progress.time[i] = NON_FINITE, after
+            return
+        if not theta > 0.0:
+            progress.code[i], progress.time[i] = MAX_PRINCIPLE, after
             return
         if not abs(swell) < LONGEST:
             progress.code[i], progress.time[i] = OVERSTRETCHED, after

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mpm.memory import rows
-from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW
+from mpm.outcome import BUDGET, COMPLETED, MAX_PRINCIPLE, NON_FINITE, STEP_UNDERFLOW
 from mpm.rigid.nodes import interpolate
 
 SAFETY, GROW, SHRINK, FEWEST = 0.8, 6.0, 0.2, 1e-12
@@ -33,6 +33,7 @@ class Watch:
     shots: tuple[np.ndarray, np.ndarray, np.ndarray]  # times, and nodes and values of the points
     stop: object = None  # stop(fraction, time) -> whether to stop
     keeper: object = None  # mpm.memory
+    limits: tuple[float, float] = (-math.inf, math.inf)  # of theta - zero, beyond which a record ends the run [K]
 
 
 @dataclass
@@ -54,6 +55,8 @@ class Trace:
     code: int = COMPLETED
     time: float = 0.0
     final: np.ndarray | None = None
+    found: str = ""  # what was wrong
+    again: int = 0  # ways that were tried before (mpm.rigid.run)
 
     def memory(self) -> dict:
         """What was seen so far (mpm.memory)."""
@@ -79,6 +82,22 @@ def record(trace, watch, method, states, exchanged, weight):
         trace.most.append(seen.max())
         trace.heat.append(method.heat(state))
         trace.exchanged.append(q)
+
+
+def judge(trace, watch, zero: float, before: int) -> None:
+    """Drops the rows from the first on, after `before` of them, whose temperatures are not finite or beyond the limits, and says so in the trace."""
+    low, high = watch.limits
+    for row in range(before, len(trace.heat)):
+        least, most = trace.least[row], trace.most[row]
+        if low < least and most < high:
+            continue
+        trace.code = MAX_PRINCIPLE if math.isfinite(least + most) else NON_FINITE
+        worst = most if most >= high else least
+        said = "below absolute zero" if zero + worst <= 0 else f"limits {zero + low:.5g} to {zero + high:.5g} K"
+        trace.found, trace.time = f"({zero + worst:.5g} K, {said})", float(watch.times[row])
+        for name in ROWS[:-1]:
+            del getattr(trace, name)[row:]
+        return
 
 
 def crossing(method, watch, before, t, dt, probe, level):
@@ -143,6 +162,10 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
             last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
             basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
             record(trace, watch, method, before + basis @ columns, exchanged, weight)
+            judge(trace, watch, method.system.zero, first)
+            if trace.code != COMPLETED:
+                trace.final = state
+                return trace
             first = last
         if shown < len(watch.shots[0]) and watch.shots[0][shown] <= new * (1 + 1e-14):
             last = int(np.searchsorted(watch.shots[0], new * (1 + 1e-14), side="right"))

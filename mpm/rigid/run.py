@@ -1,14 +1,14 @@
 """Solve the heat equation in rigid bodies: choose a method, run each body, put the pieces together."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from mpm.materials.laws import Constant
 from mpm.materials.roles import enthalpy, value
-from mpm.outcome import COMPLETED, Outcome, outcome
+from mpm.outcome import COMPLETED, MAX_PRINCIPLE, Outcome, outcome
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
 from mpm.rigid.drive import Trace, Watch, drive
@@ -16,7 +16,7 @@ from mpm.rigid.geometry import evaluated
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
 from mpm.rigid.nodes import interpolate
-from mpm.rigid.system import System, make_system
+from mpm.rigid.system import RigidBody, System, law, make_system
 
 STEPS, FACTORS, LINEAR = 150, 500, 20  # of a run at the default tolerance: explicit steps, factorisations of Newton and of constant laws
 LARGE, LESS = 2e10, 5e8  # multiply-adds of one factorisation that nobody waits for (3 s), and above which conjugate gradients are quicker, unless STIFF
@@ -67,6 +67,8 @@ class RigidRun:
         return geometry.x, geometry.w
 
 
+NOTICEABLE, CORNERS, MOST = 0.005, 0.05, 0.5  # of the range of the data: told; an automatic method is changed for `bounded` (see `ways`); the run fails
+ADVICE = "`method.rigid: bounded`, or a shorter `time.step`; below absolute zero: a given flux takes more heat than there is"
 EVALUATION, PIVOT = 4e-10, 1.5e-10  # s a node and stencil entry (with its share of look-ups), s a multiply-add of the factorisation: measured
 
 
@@ -100,6 +102,24 @@ def choose(system: System, method: Method, end: float):
     return explicit if method.kind == "explicit" or cost < rival else NewtonSteps(system, method.tolerance, method.order)
 
 
+def ways(body: RigidBody, method: Method) -> list[Method]:
+    """What to try, one after the other while temperatures leave their data: `auto` ends with `bounded`, and begins with it where nothing is conducted."""
+    if method.kind != "auto":
+        return [method]
+    last, kappa = Method("bounded", tolerance=1e-3, step=method.step), law(body.kappa)
+    return [last] if isinstance(kappa, Constant) and kappa.constant == 0 else [method, last]
+
+
+def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float]:
+    """Temperatures less zero that end an attempt: MOST of the range beyond the data and absolute zero; in an attempt that is not the last one CORNERS where
+    steps of constant laws are chosen by their error (then only the consistent mass overshoots, at corners in the first moments), else NOTICEABLE.
+    """
+    share = MOST if last else CORNERS if isinstance(steps, LinearSteps) and not fixed else NOTICEABLE
+    slack = max(share * system.span, 1e-9 * system.hottest)
+    low, high = (bound - system.zero for bound in system.bounds)
+    return max(low - slack, -system.zero), high + slack
+
+
 def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
     """What `solve` would do, without doing it: unknowns, methods, limits [s], a guess at seconds, bytes of the matrices."""
     method, axisymmetric = method or Method(), space == "axisymmetric"
@@ -107,8 +127,9 @@ def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
     origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
     found = {"unknowns": 0, "methods": [], "limits": {}, "seconds": 0.0, "memory_bytes": 0}
     for body in bodies:
-        system = make_system(body, axisymmetric, h, origin, float(end), method.kind == "bounded")
-        steps = choose(system, method, float(end))
+        way = ways(body, method)[0]
+        system = make_system(body, axisymmetric, h, origin, float(end), way.kind == "bounded")
+        steps = choose(system, way, float(end))
         explicit = isinstance(steps, ChebyshevSteps)
         linear = isinstance(steps, LinearSteps)
         shaped = system.geometry
@@ -135,7 +156,7 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric).
     """
     start = time.perf_counter()
-    before = (keeper.found if keeper is not None else None) or {"done": [], "drive": None, "spent": 0.0}
+    before = (keeper.found if keeper is not None else None) or {"done": [], "drive": None, "again": 0, "spent": 0.0}
     method, probes, thresholds = method or Method(), probes or {}, list(thresholds)
     axisymmetric = space == "axisymmetric"
     dimension = 2 if axisymmetric else int(space)
@@ -148,19 +169,25 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     shot_times, points = (np.asarray(a, dtype=float) for a in snapshots or (np.zeros(0), np.zeros((0, dimension))))
     seen = np.full((len(shot_times), len(points)), np.nan)
     for k, body in enumerate(bodies):
-        system = make_system(body, axisymmetric, h, origin, float(end), method.kind == "bounded")
-        steps = choose(system, method, float(end))
         mine = np.flatnonzero(owner == k)
-        levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]
         here = np.flatnonzero(body.shape.distance(points) <= 1e-9 * h)
-        shots = (shot_times, *evaluated(system.geometry.nodes, points[here]))
         beat = None if stop is None else (lambda part, t, k=k: stop((k + part) / len(bodies), t))
-        inner = None if keeper is None else Within(keeper, [trace for _, _, trace, _ in parts], before["spent"], start)
-        watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat, inner)
-        if k < len(before["done"]):
-            trace = Trace.recalled(before["done"][k])
-        else:
-            trace = drive(steps, watch, float(end), system.geometry.volume, method.step, before["drive"] if k == len(before["done"]) else None)
+        done = Trace.recalled(before["done"][k]) if k < len(before["done"]) else None
+        cut = before["drive"] if k == len(before["done"]) else None
+        tries = ways(body, method)
+        for again in range(done.again if done is not None else before["again"] if cut is not None else 0, len(tries)):
+            way, last = tries[again], again == len(tries) - 1
+            system = make_system(body, axisymmetric, h, origin, float(end), way.kind == "bounded")
+            steps = choose(system, way, float(end))
+            levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]
+            shots = (shot_times, *evaluated(system.geometry.nodes, points[here]))
+            inner = None if keeper is None else Within(keeper, [trace for _, _, trace, _ in parts], again, before["spent"], start)
+            reach = limits(system, steps, way.step is not None, last)
+            watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat, inner, reach)
+            trace = done or drive(steps, watch, float(end), system.geometry.volume, way.step, cut)
+            trace.again, cut = again, None
+            if trace.code != MAX_PRINCIPLE:
+                break
         parts.append((system, steps, trace, mine))
         seen[: len(trace.shots), here] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(here))
         run_bodies.append((system, steps, (body.shape, trace.final)))
@@ -177,6 +204,7 @@ class Within:
 
     keeper: Any
     done: list[Trace]
+    again: int
     spent: float
     start: float
 
@@ -184,12 +212,20 @@ class Within:
         return self.keeper.due(stop)
 
     def save(self, memory: dict) -> None:
-        self.keeper.save({"done": [trace.memory() for trace in self.done], "drive": memory, "spent": self.spent + time.perf_counter() - self.start})
+        spent = self.spent + time.perf_counter() - self.start
+        self.keeper.save({"done": [trace.memory() for trace in self.done], "drive": memory, "again": self.again, "spent": spent})
 
 
 def _content(system: System, reference: float) -> float:
     """Heat of the body at `zero` above that at `reference` [J]."""
     return system.density * float(system.geometry.volume.sum()) * (enthalpy(system.alpha, system.zero) - enthalpy(system.alpha, reference))
+
+
+def beyond(system: System, trace: Trace) -> float:
+    """How far a body's temperatures leave the bounds of their data, as a share of the range."""
+    low, high = system.bounds
+    worst = max(system.zero + max(trace.most, default=-np.inf) - high, low - system.zero - min(trace.least, default=np.inf), 0.0)
+    return float(worst / system.span) if worst > 1e-9 * system.hottest else 0.0
 
 
 def _gather(parts, run_bodies, snapshots, times, names, thresholds, reference, start) -> RigidRun:
@@ -223,8 +259,12 @@ def _gather(parts, run_bodies, snapshots, times, names, thresholds, reference, s
         "smallest_step": min(p[2].smallest for p in parts),
         "largest_step": max(p[2].largest for p in parts),
         "beta_h_over_kappa": max(p[0].stiff for p in parts),
+        "beyond": [beyond(system, trace) for system, _, trace, _ in parts],
     }
     limits = {"euler": min(2 / p[1].radius for p in parts if p[1].radius > 0)} if any(p[1].radius > 0 for p in parts) else {}
     unknowns = sum(int(p[0].geometry.active.sum()) for p in parts)
-    result = outcome(worst.code, time=None if worst.code == COMPLETED else worst.time, step=worst.steps if worst.code != COMPLETED else -1)
+    failed = worst.code != COMPLETED
+    result = outcome(worst.code, time=worst.time if failed else None, step=worst.steps if failed else -1, detail=worst.found)
+    if worst.code == MAX_PRINCIPLE:
+        result = replace(result, advice=ADVICE)
     return RigidRun(result, times[:shown], series, crossings, steps, rejected, unknowns, time.perf_counter() - start, facts, limits, snapshots, run_bodies)

@@ -50,6 +50,12 @@ def hot_walls(experiment, sides) -> list[HotWall]:
     return found
 
 
+def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:
+    """SceneError where the exchange depends on a surface temperature that kappa = 0 leaves behind (config/rules_scene.py tells it of a single point)."""
+    if exchanges and not conducts:
+        raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
+
+
 def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
     """(Surface, Surroundings, pieces kept) of a body: the pieces that an entry names, all of them where a wall is hot; NoExchange, None where nothing acts."""
     acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side)))]
@@ -65,8 +71,7 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
     around = [act.outside for act in acts if act.beta > 0] + [wall.temperature for wall in walls]
     seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
     most = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
-    if most == 0 and any(act.beta > 0 for act in (*acts, *walls)):
-        raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
+    must_conduct(name, most > 0, any(act.beta > 0 for act in (*acts, *walls)) or bool(radiating))
     S, D = len(kept), cut.centroid.shape[1]
     owner, dtype = cut.owner[kept], thermal.theta.dtype
     owners = np.unique(owner)

@@ -4,11 +4,14 @@ import time
 
 import numpy as np
 
+from mpm.heat.programmes import bounds
+from mpm.materials import value
 from mpm.scene.build import SceneError, output_times, watch
-from mpm.scene.exchange import programme, robin
+from mpm.scene.exchange import must_conduct, programme, robin
 from mpm.scene.law import law
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
+from mpm.warned import warning
 
 
 def rigid_bodies(experiment, field=None) -> list:
@@ -31,6 +34,8 @@ def rigid_bodies(experiment, field=None) -> list:
         radiation = tuple((e.side, e.radiation.emissivity, programme(e.radiation.surroundings)) for e in entries if e.radiation is not None)
         outline = shape(body.shape, experiment.grid.dimension)
         kappa, alpha = law(material.heat.kappa), law(material.heat.alpha)
+        around = [outside for _, beta, outside in surfaces if beta > 0] + [sky for _, emissivity, sky in radiation if emissivity > 0]
+        must_conduct(name, any(value(kappa, t) > 0 for t in (body.temperature, *(t for one in around for t in bounds(one)))), bool(around))
         bodies.append(RigidBody(outline, body.temperature, material.density, kappa, alpha, surfaces, fluxes, radiation, field))
     return bodies
 
@@ -39,7 +44,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     """Heat alone, bodies that do not move. `exact(x, t)` where the config names its solution; it is compared with unless told otherwise."""
     from mpm.records.variables import dataset_name, threshold
     from mpm.rigid import solve
-    from mpm.rigid.run import Method
+    from mpm.rigid.run import NOTICEABLE, Method
 
     began = time.perf_counter()
     found = {dataset_name(name): threshold(name) for name in experiment.output.observables if threshold(name) is not None}
@@ -61,7 +66,12 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
     finals["steps"] = float(solved.steps)
     facts = solved.facts | {"unknowns": solved.unknowns, "rejected": solved.rejected, "limits": solved.limits, "binds": "accuracy"}
-    run = Run(solved.outcome, solved.times, series, finals, steps=solved.steps, facts=facts)
+    warned = [
+        warning("temperature", f"{name}: temperatures leave the bounds of their data by up to {100 * over:.2g} % of the range", "`method.rigid: bounded`")
+        for name, over in zip(experiment.bodies, facts.pop("beyond"), strict=False)
+        if over > NOTICEABLE
+    ]
+    run = Run(solved.outcome, solved.times, series, finals, steps=solved.steps, facts=facts | ({"warnings": warned} if warned else {}))
     look.frames(solved.snapshots, run)
     run.wall_time = solved.spent + time.perf_counter() - began
     return run

@@ -21,11 +21,11 @@ def constants(experiment, body) -> tuple[float, float]:
     return float(kappa.value), float(kappa.value) / (material.density * float(alpha.value))
 
 
-def one_exchange(experiment, name: str, side: str = "all") -> tuple[float, float]:
-    """beta and the temperature outside; one convection or fixed temperature, constant in time, must act on `side`, and nothing elsewhere."""
+def one_exchange(experiment, name: str, *sides: str) -> tuple[float, float]:
+    """beta and the temperature outside; one convection or fixed temperature, constant in time, must act on one of `sides` (all), and nothing elsewhere."""
     entries = [surface for surface in experiment.surfaces if surface.of == name]
-    if len(entries) != 1 or entries[0].side != side:
-        raise ValueError(f"the exact solution needs one surface entry of {name}, with side {side}")
+    if len(entries) != 1 or entries[0].side not in (sides or ("all",)):
+        raise ValueError(f"the exact solution needs one surface entry of {name}, with side {' or '.join(sides or ('all',))}")
     entry = entries[0]
     if entry.flux is not None or entry.radiation is not None or (entry.convection is None) == (entry.fixed is None):
         raise ValueError("the exact solution needs convection or a fixed temperature, and nothing else")

@@ -45,6 +45,14 @@ def test_the_start_is_uniform_and_offsets_move_the_solution():
     assert exact_solution(moved)(x + 0.05, 0.1) == pytest.approx(exact_solution(problem("slab", 1.0))(x, 0.1), abs=1e-12)
 
 
+@pytest.mark.parametrize(("side", "still"), [("left", 2.5), ("right", 0.5)])
+def test_a_slab_that_exchanges_on_one_side_is_half_of_one_that_does_on_both(side, still):
+    half = problem("slab", 1.0, surfaces=[{"of": "it", "side": side, "convection": {"beta": 1.0, "outside": 300}}])
+    s = np.linspace(0.0, 1.0, 5)
+    found = exact_solution(half)((still + np.sign(1.5 - still) * 2 * s)[:, None], 0.4)
+    assert found == pytest.approx(exact_solution(problem("slab", 2.0))((1.5 + s)[:, None], 0.1), abs=1e-12)
+
+
 @pytest.mark.parametrize("biot", [1e-3, 1.0, 1e3, np.inf])
 def test_roots_are_ordered_and_solve_their_equation(biot):
     from scipy.special import j0, j1
@@ -62,7 +70,7 @@ def test_roots_are_ordered_and_solve_their_equation(biot):
 REFUSED = {
     "needs a box": lambda: problem("slab", 1.0, dimension=2),
     "robin_cylinder needs": lambda: problem("cylinder", 1.0, dimension=1),
-    "one surface": lambda: problem("slab", 1.0, surfaces=[{"of": "it", "side": "left", "convection": {"beta": 1, "outside": 300}}]),
+    "one surface": lambda: problem("slab", 1.0, surfaces=[{"of": "it", "side": s, "convection": {"beta": 1, "outside": 300}} for s in ("left", "right")]),
     "with side lateral": lambda: problem("cylinder", 1.0, "axisymmetric", surfaces=[{"of": "it", "convection": {"beta": 1, "outside": 300}}]),
     "constant kappa": lambda: problem(
         "slab", 1.0, materials={"unit": {"density": 1, "heat": {"fourier": {"kappa": {"logistic": {"low": 1, "high": 2, "at": 300, "width": 1}}, "alpha": 1}}}}
