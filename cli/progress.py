@@ -6,6 +6,8 @@ import threading
 import time
 from typing import Any, TextIO
 
+from mpm_cli.talk import end
+
 from mpm.sweep.report import Reporter
 
 LEAVE = 1.5  # s that a run has to stop after the first signal
@@ -128,7 +130,7 @@ class Single:
         """The run has not come to a place where it can stop (it compiles, or takes one long step): end without it."""
         sys.stderr.write("stopped; what ran since the last checkpoint is lost\n")
         sys.stderr.flush()
-        os._exit({"interrupted": 130, "terminated": 143}[self.stopped])
+        end({"interrupted": 130, "terminated": 143}[self.stopped])
 
     def note(self, text: str) -> None:
         self.reporter.note(text)

@@ -47,9 +47,17 @@ def internal(error: Exception, what: str) -> None:
     warn(f"{what}: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
 
 
+def end(code: int) -> None:
+    """End here and now."""
+    from mpm import cache
+
+    cache.remove()
+    os._exit(code)
+
+
 def leave_at_once() -> None:
     """The command was told to stop and has done what it had to: whoever tells it again finds it gone, without a word from an interpreter that is ending."""
     if threading.current_thread() is threading.main_thread():
         for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 143)):
             if signal.getsignal(number) != signal.SIG_IGN:
-                signal.signal(number, lambda *_, code=code: os._exit(code))
+                signal.signal(number, lambda *_, code=code: end(code))

@@ -1,16 +1,14 @@
 """How mpm compiles: `kernel` (njit with the house's flags) and `role` (a function chosen by the type of its first argument).
 
 Numba's on-disk cache does not notice that a callee in another file changed, so a kernel's cache is in a folder named after the versions that matter and a
-hash of every source file that the kernel can contain (mpm.fingerprint). It is private (0700). Everything compiled goes through here and mpm.linking.
+hash of every source file that the kernel can contain (mpm.fingerprint). It is private (mpm.cache). All that is compiled comes through here and mpm.linking.
 """
 
 import contextlib
 import functools
 import hashlib
 import io
-import os
 import platform
-import tempfile
 from pathlib import Path
 
 import numba
@@ -19,7 +17,7 @@ from numba import config, njit
 from numba.core.caching import IndexDataCacheFile
 from numba.extending import overload
 
-from mpm import linking
+from mpm import cache, linking
 from mpm.fingerprint import fingerprint
 
 # No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
@@ -31,20 +29,7 @@ FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model
 INLINE = {"forceinline": True, "_nrt": False}
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
-def cache_folder() -> Path:
-    """`$MPM_CACHE_DIR`, else the user's cache folder; a private temporary folder where neither can be written."""
-    name = f"numba-{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}"
-    base = os.environ.get("MPM_CACHE_DIR") or os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "mpm")
-    folder = Path(base) / name
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="mpm-"))
-
-
-CACHE = cache_folder()
+CACHE = cache.private(f"numba-{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}")
 
 linking.install()
 

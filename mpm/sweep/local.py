@@ -13,6 +13,7 @@ import tempfile
 import threading
 from typing import Any
 
+from mpm import cache
 from mpm.sweep.executors import BrokenWorkers
 from mpm.sweep.processes import ONE_THREAD, STALL, START_FAILURES
 from mpm.sweep.room import Pulse
@@ -39,6 +40,7 @@ class Local:
         self.children: list[subprocess.Popen] = []
         self.pulses: dict[int, Pulse] = {}
         self.notes: list[str] = []  # to be told
+        cache.base()  # one for all workers
         self.grow(jobs)
 
     def grow(self, wanted: int) -> bool:

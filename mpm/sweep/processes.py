@@ -18,6 +18,7 @@ import time
 from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
+from mpm import cache
 from mpm.sweep.executors import BrokenWorkers, Event, Lost, Note, Task, event
 from mpm.sweep.room import Pulse, resident, size
 
@@ -96,6 +97,7 @@ class Processes:
         self.weighed = 0.0
         self.failed_starts = 0
         self.children: dict[Connection, Child] = {}
+        cache.base()  # one for all workers
         self.grow()
 
     def grow(self) -> None:
@@ -154,7 +156,9 @@ class Processes:
                 child.state = "warming"
                 child.order({"do": "warm", "config": self.warm})
                 self.warm = None
-            return []
+            fresh = [text for text in message["words"] if text not in cache.words]
+            cache.words += fresh
+            return [Note(text) for text in fresh]
         if kind == "warmed":
             child.state = "idle"
             return [Note(message["text"])] if message["text"] else []

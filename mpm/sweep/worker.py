@@ -17,6 +17,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from mpm.cache import words
 from mpm.sweep.executors import Task
 
 QUIET = 0.2  # least seconds between two beats told
@@ -174,7 +175,7 @@ class Worker:
         for module in ("mpm.records.point", "h5py", *getattr(runner, "NEEDS", ("mpm.jit",))):
             importlib.import_module(module)
         config = importlib.import_module("mpm.config")
-        self.tell({"is": "ready"})
+        self.tell({"is": "ready", "words": words})
         while (order := self.orders.get())["do"] != "quit":
             if order["do"] == "warm":
                 try:

@@ -1,4 +1,7 @@
-"""R13: many processes on an empty compile cache at once, and cache files that are cut or wrong: nobody crashes, and all get the same numbers."""
+"""R13: many processes on an empty compile cache at once, and cache files that are cut or wrong: nobody crashes, and all get the same numbers.
+
+And a compile cache that is not its user's alone: nothing in it is loaded.
+"""
 
 import os
 import random
@@ -7,6 +10,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from mpm import cache
 
 ROOT = Path(__file__).parents[2]
 CODE = "import numpy as np; from mpm.diagnostics import enthalpies; from mpm.materials.laws import Constant; print(enthalpies(Constant(2.0), np.arange(3.0)))"
@@ -33,6 +38,68 @@ def test_cut_and_wrong_cache_files_are_made_anew(tmp_path):
             path.write_bytes(change(path.read_bytes()))
         assert outcome(start(tmp_path))[:2] == good[:2]
         assert outcome(start(tmp_path))[:2] == good[:2]
+
+
+def link(folder):
+    (folder.parent / "theirs").mkdir(mode=0o700)
+    folder.symlink_to(folder.parent / "theirs")
+
+
+def open_to_others(folder):
+    folder.mkdir()
+    folder.chmod(0o750)
+
+
+def of_somebody(folder):
+    if os.geteuid():
+        pytest.skip("only root can give a folder away")
+    folder.mkdir(mode=0o700)
+    os.chown(folder, 12345, 12345)
+
+
+@pytest.mark.parametrize("spoil, why", [(link, "it is a link"), (open_to_others, "others can enter it"), (of_somebody, "it belongs to user 12345")])
+def test_a_cache_that_is_not_its_users_alone_is_not_looked_into(tmp_path, monkeypatch, capsys, spoil, why):
+    monkeypatch.setenv("MPM_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cache, "words", [])
+    spoil(tmp_path / "name")
+    before = os.lstat(tmp_path / "name").st_mtime_ns
+    found = cache.private("name")
+    assert found == tmp_path / "name-2" and found.stat().st_mode & 0o7777 == 0o700 and why in capsys.readouterr().err
+    assert cache.private("name") == found and capsys.readouterr().err == "" and os.lstat(tmp_path / "name").st_mtime_ns == before
+    assert cache.private("good") == tmp_path / "good"
+
+
+def test_a_place_where_others_could_exchange_the_cache_is_not_used(tmp_path, monkeypatch):
+    monkeypatch.setenv("MPM_CACHE_DIR", str(tmp_path / "cache"))
+    assert cache.private("name") == tmp_path / "cache" / "name"
+    (tmp_path / "cache").chmod(0o777)
+    assert cache.private("name").parent != tmp_path / "cache" and "others can write there" in cache.words[-1]
+    cache.remove()
+    monkeypatch.setenv("MPM_CACHE_DIR", str(tmp_path / "cache"))
+    (tmp_path / "cache").chmod(0o1777)
+    assert cache.private("name") == tmp_path / "cache" / "name"
+
+
+SWEEP = """
+import sys
+sys.path[:0] = {paths!r}
+from scenes import config, go
+from mpm import cache
+assert go(config([0.2, 0.5]), {out!r}, jobs=2).exit_code == 0
+print(len(cache.made), [path.is_dir() for _, path in cache.made])
+"""
+
+
+def test_no_temporary_cache_stays(tmp_path):
+    """Where the place for it cannot be written, a sweep and its workers share one temporary place, which ends with the sweep."""
+    (tmp_path / "file").touch()
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "marks").touch()
+    code = SWEEP.format(paths=[str(Path(__file__).parent), str(Path(__file__).parents[1] / "fakes"), *sys.path], out=str(tmp_path / "out"))
+    env = os.environ | {"MPM_CACHE_DIR": str(tmp_path / "file"), "TMPDIR": str(tmp_path / "tmp"), "FAKE_MARKS": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout == "1 [True]\n" and f"is not kept in {tmp_path / 'file'}" in done.stderr, done.stderr
+    assert list((tmp_path / "tmp").iterdir()) == []
 
 
 @pytest.mark.slow
