@@ -98,6 +98,21 @@ def pressure_of(expansion, body) -> np.ndarray:
     return np.zeros(len(body.particles.m))
 
 
+@kernel
+def specific_heats(law, theta):
+    """alpha (N,) [J/(kg K)] at absolute temperatures."""
+    out = np.empty(theta.shape[0])
+    for i in range(theta.shape[0]):
+        out[i] = value(law, theta[i])
+    return out
+
+
+def capacities(body) -> np.ndarray:
+    """Heat capacity of each particle of a body that has heat (N,) [J/K]."""
+    alpha, m = body.thermal.alpha, body.particles.m.astype(float)
+    return m * (alpha.constant if isinstance(alpha, Constant) else specific_heats(alpha, temperatures(body)))
+
+
 def heat_since(body, start: np.ndarray) -> float:
     """Heat taken up since temperatures were `start` (less zero) [J]."""
     thermal, m = body.thermal, body.particles.m

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import extents
-from mpm.diagnostics import exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
+from mpm.diagnostics import capacities, exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
 from mpm.error import Errors
-from mpm.follow import nearest, renumbered, sampled
+from mpm.follow import moved, nearest, renumbered, sampled
 from mpm.memory import rows
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
@@ -56,6 +56,7 @@ class Recorder:
         self.scene = scene
         self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
         self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
+        self.capacity = np.concatenate([capacities(body) for body in self.warm]) if self.warm else None  # (N,) at the start [J/K]
         self.times: list[float] = []
         self.series: dict[str, list[float]] = {}
         self.frames: list[tuple[float, dict, dict]] = []
@@ -138,9 +139,13 @@ class Recorder:
         for k, axis in enumerate(axes):
             yield f"momentum_{axis}", np.sum(m * v[:, k])
             yield f"position_mean_{axis}", np.sum(m * x[:, k]) / np.sum(m)
-            yield f"position_min_{axis}", np.min(x[:, k])
-            yield f"position_max_{axis}", np.max(x[:, k])
-            yield f"extent_{axis}", np.ptp(x[:, k])
+        if scene.outlines:
+            ends = [moved(outline, body.particles.x, scene.space.h) for outline, body in zip(scene.outlines, scene.bodies, strict=True)]
+            low, high = np.min([end.min(axis=0) for end in ends], axis=0), np.max([end.max(axis=0) for end in ends], axis=0)
+            for k, axis in enumerate(axes):
+                yield from ((f"position_min_{axis}", low[k]), (f"position_max_{axis}", high[k]), (f"extent_{axis}", high[k] - low[k]))
+            if isinstance(scene.space, Axisymmetric):
+                yield "radius_max", high[0]
         yield "velocity_max", math.sqrt(np.max(np.sum(v * v, axis=1)))
         yield "J_min", np.min(J)
         yield "J_max", np.max(J)
@@ -167,9 +172,8 @@ class Recorder:
         if not self.warm:
             return
         theta = np.concatenate([body.thermal.zero + body.thermal.theta.astype(float) for body in self.warm])
-        m = np.concatenate([body.particles.m for body in self.warm])
         total = sum(heat_since(body, self.start[id(body)]) for body in self.warm)
-        yield "temperature_mean", np.sum(m * theta) / np.sum(m)
+        yield "temperature_mean", np.sum(self.capacity * theta) / np.sum(self.capacity)
         yield "temperature_min", np.min(theta)
         yield "temperature_max", np.max(theta)
         yield "heat_total", total

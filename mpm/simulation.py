@@ -67,8 +67,9 @@ class Scene:
     step: float | None  # None: automatic
     safety: float
     heat_step: float | None
-    surroundings: tuple = ()  # mpm.integrate.surroundings.Surroundings or None, by body
-    seams: tuple = ()  # mpm.integrate.tears.Seams or None, by body
+    surroundings: tuple = ()  # by body: mpm.integrate.surroundings.Surroundings or None; seams: mpm.integrate.tears.Seams or None
+    seams: tuple = ()
+    outlines: tuple = ()  # mpm.follow.Carried: points of its surface; without them no extents are recorded
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
     watch: Any = None  # what to record: mpm.observe.Watch
@@ -165,8 +166,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         clock.output += 1
     show_all(scene)
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
-    if guards.warned:
-        run.facts["warnings"] = guards.warned
+    run.facts |= {"warnings": guards.warned} if guards.warned else {}
     return run
 
 

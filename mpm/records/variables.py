@@ -42,7 +42,7 @@ class Threshold:
 
 TABLE = [
     # series, observables of a config
-    ("temperature.mean", "θ", "K", SERIES, "mean temperature, weighted with heat capacity"),
+    ("temperature.mean", "θ", "K", SERIES, "mean temperature, weighted with the heat capacity at the start"),
     ("temperature.min", "θ", "K", SERIES, "lowest temperature"),
     ("temperature.max", "θ", "K", SERIES, "highest temperature"),
     ("heat.total", "H", "J", SERIES, "heat content above the reference temperature"),
@@ -56,6 +56,7 @@ TABLE = [
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
     ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
+    ("radius.max", "r", "m", SERIES, "largest radius of the material"),
     ("radius.95", "r95", "m", SERIES, "radius that holds 95 % of the volume"),
     ("radius.99", "r99", "m", SERIES, "radius that holds 99 % of the volume"),
     ("J.min", "J", "1", SERIES, "smallest volume ratio det F"),
@@ -122,7 +123,7 @@ TABLE = [
     *((f"position.mean_{a}", a, "m", SERIES, f"centre of mass along {a}") for a in AXES),
     *((f"position.min_{a}", a, "m", SERIES, f"smallest {a} of the material") for a in AXES),
     *((f"position.max_{a}", a, "m", SERIES, f"largest {a} of the material") for a in AXES),
-    *((f"extent.{a}", "", "m", SERIES, f"extent along {a}") for a in AXES),
+    *((f"extent.{a}", "", "m", SERIES, f"extent of the material along {a}") for a in AXES),
 ]
 
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")

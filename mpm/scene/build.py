@@ -5,7 +5,6 @@ surface are right at any offset to the grid. Only what the config names is made.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,8 +14,10 @@ from mpm.config.shapes_fit import home
 from mpm.error import Motion
 from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
 from mpm.observe import Watch
+from mpm.scene.contents import by_nodes
 from mpm.scene.law import law
 from mpm.scene.load import loaded
+from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
 from mpm.scene.seams import refuse_idle, surface_and_seams
@@ -70,7 +71,7 @@ def grid_space(experiment):
 
 
 def sample(experiment, body):
-    """Cut cells of a body in the grid's coordinates, and the edges of the particle cells."""
+    """Cut cells of a body in the grid's coordinates, the edges of the particle cells, and its outline (mpm.scene.outline)."""
     grid, method = experiment.grid, experiment.method
     outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
@@ -83,20 +84,9 @@ def sample(experiment, body):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
             raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
     edges = [np.arange(math.floor(low / edge + 1e-9), math.ceil(high / edge - 1e-9) + 1) * edge for low, high in zip(lower, upper, strict=True)]
-    return by_nodes(cells(outline, edges, radial=grid.dimension == "axisymmetric"), grid.cell), edges
-
-
-def by_nodes(cut, h: float):
-    """Particles in the order of the nodes nearest to them, so that those that share a stencil follow one another (transfer/rows.py).
-
-    Half-way between two nodes it is always the upper one, whatever round-off says.
-    """
-    nearest = np.floor(cut.centroid / h + 0.5 + 1e-9).astype(np.int64)
-    low, high = nearest.min(axis=0), nearest.max(axis=0)
-    order = np.argsort(np.ravel_multi_index(tuple((nearest - low).T), high - low + 1), kind="stable")
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    return replace(cut, volume=cut.volume[order], centroid=cut.centroid[order], cell=cut.cell[order], owner=back[cut.owner])
+    radial = grid.dimension == "axisymmetric"
+    cut = by_nodes(cells(outline, edges, radial), grid.cell)
+    return cut, edges, outline_of(outline, cut, edges, radial)
 
 
 def elastic_law(model):
@@ -131,10 +121,10 @@ def expansion_law(model, elastic, theta: np.ndarray, zero: float):
 
 
 def moving_body(experiment, name: str, zero: float, space):
-    """(Body, its Surroundings or None, its Seams or None): particles and laws of one body."""
+    """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut, edges = sample(experiment, config)
+    cut, edges, outline = sample(experiment, config)
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -166,7 +156,7 @@ def moving_body(experiment, name: str, zero: float, space):
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
     source = loaded(experiment, name, cut, space, gradient_operator(experiment))
-    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams
+    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams, outline
 
 
 def spin_tensor(omega, D: int) -> np.ndarray:
@@ -225,8 +215,9 @@ def build(experiment, exact=None) -> Scene:
         from mpm.scene.total import total_bodies  # which asks this module for laws
         bodies, references = total_bodies(experiment, space)
         surroundings = seams = (None,) * len(names)
+        outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
-        bodies, surroundings, seams = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
+        bodies, surroundings, seams, outlines = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
         refuse_idle(experiment, seams)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
@@ -250,6 +241,7 @@ def build(experiment, exact=None) -> Scene:
         surroundings=surroundings,
         seams=seams,
         references=references,
+        outlines=outlines,
         walls=wall_kinds(experiment),
         gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * experiment.grid.directions),
         blend=blend,

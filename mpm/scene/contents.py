@@ -6,7 +6,7 @@ point of a filled cell. Sums and first moments are those of the quadrature; surf
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -181,3 +181,16 @@ def particles(held: Contents, edges) -> CutCells:
     some = area > 0
     area, normal = area[some], normal[some] / np.linalg.norm(normal[some], axis=1, keepdims=True)
     return CutCells(volume, moment, cell, pair[some] // sides, area, point[some] / area[:, None], normal, pair[some] % sides)
+
+
+def by_nodes(cut, h: float):
+    """Particles in the order of the nodes nearest to them, so that those that share a stencil follow one another (transfer/rows.py).
+
+    Half-way between two nodes it is always the upper one, whatever round-off says.
+    """
+    nearest = np.floor(cut.centroid / h + 0.5 + 1e-9).astype(np.int64)
+    low, high = nearest.min(axis=0), nearest.max(axis=0)
+    order = np.argsort(np.ravel_multi_index(tuple((nearest - low).T), high - low + 1), kind="stable")
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    return replace(cut, volume=cut.volume[order], centroid=cut.centroid[order], cell=cut.cell[order], owner=back[cut.owner])

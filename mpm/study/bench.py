@@ -59,7 +59,7 @@ def lattice(options: Options) -> tuple[np.ndarray, float]:
     corner = np.full(dim, (n - cells) // 2 / n)
     corner[1] = 4.0 / n
     x += corner
-    x = x[np.lexsort(np.floor(x * n + 0.5).T[::-1])]  # as a config's particles come: cell by cell (mpm.scene.build.by_nodes)
+    x = x[np.lexsort(np.floor(x * n + 0.5).T[::-1])]  # as a config's particles come: cell by cell (mpm.scene.contents.by_nodes)
     if options.order == "shuffle":
         x = x[random.permutation(len(x))]
     return x, spacing**dim
