@@ -86,7 +86,7 @@ class Guards:
             seen = stagger(scene, clock.stepped[0]) if not scene.references else 0.0  # velocities there are of the time of the positions
             gained, allowed = (gained, BLIND) if seen is None else (gained - seen, GROWTH)
         if self.judged and gained > allowed * self.most and gained > 1e-12 * abs(self.begun):
-            said = f"({gained:.3g} J more than at the start, {100 * gained / self.most:.0f} % of the largest)"
+            said = f"(more than at the start by {100 * gained / self.most:.0f} % of the largest)"
             return outcome(ENERGY_GROWTH, time=clock.time * scene.scale, step=clock.steps, detail=said)
         return self.gaps(scene, clock) if not scene.references else outcome(COMPLETED)
 

@@ -13,6 +13,7 @@ import numpy as np
 from mpm.costs import estimate
 from mpm.integrate.order import SHARED
 from mpm.memory import Turn
+from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.inventory import physics
 from mpm.state import Run
@@ -58,11 +59,21 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
         from mpm.scene.rigid import run_rigid
 
         run = run_rigid(experiment, exact, beat, compare, keeper)
+    run = whole(run, experiment.grid.dimension)
     if threads > 1:
         run.facts["threads"] = threads if shared else 1
         if not shared:
             run.facts["threads_idle"] = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
     return told(experiment, run)
+
+
+def whole(run: Run, dimension) -> Run:
+    """The run with the totals of the whole body: what an axisymmetric scene computes is per radian."""
+    factor = turn(dimension)
+    if factor != 1.0:
+        for found in (run.series, run.finals, *run.particles):
+            found |= {name: values * factor for name, values in found.items() if is_total(name)}
+    return run
 
 
 def run_points(experiments) -> list[Run]:

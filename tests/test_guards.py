@@ -130,7 +130,7 @@ def test_energy_from_nowhere_ends_a_run(core):
     assert play(1.0).outcome.ok
     for factor in (10.0, 2.0):
         run = play(factor)
-        assert run.outcome.kind == "energy_growth" and "J more than at the start" in run.outcome.message
+        assert run.outcome.kind == "energy_growth" and "(more than at the start by" in run.outcome.message
         assert 5.0 <= run.times[-1] < 6.0
 
 

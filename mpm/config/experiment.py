@@ -23,7 +23,7 @@ from mpm.config.quantities import Acceleration
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
 
-PHYSICS_VERSION = 1
+PHYSICS_VERSION = 2
 NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability")  # cannot change the result of a point
 
 

@@ -4,10 +4,13 @@
 `OBSERVABLES`   what a config may list under `output.observables` (`temperature.mean`); dots become underscores in the dataset
 `describe`      a dataset name -> Variable, names with a probe in them too (`temperature_crust`, `time_to_centre_95_degC`)
 `Threshold`     `time_to.<probe>.<value>_<unit>` taken apart
+`is_total`      whether a variable is a sum over the body; `turn`, `PER` and `describe` say of what body, and nothing else does: the whole body in 3-D and
+                axisymmetric scenes, a metre of its depth in plane ones, a square metre in 1-D, a cubic metre of the material in dimension 0
 
 Imports nothing of the package and nothing heavy. To add a quantity: one line in TABLE.
 """
 
+import math
 import re
 from dataclasses import dataclass, replace
 
@@ -16,6 +19,12 @@ STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")
 OK, FAILED, TIMEOUT, KILLED, DIVERGED, SKIPPED, PENDING = range(7)
 MEMORY = "memory"  # the outcome of a point that wants more than there is
 AXES = ("x", "y", "z", "r")
+TOTALS = ("J", "W", "N", "N m", "kg", "kg m/s", "m3", "m2")  # units of sums over a body
+PER = {
+    0: (("J/m3", "W/m3", "", "", "", "", "", ""), "per cubic metre"),
+    1: (("J/m2", "W/m2", "N/m2", "N/m", "kg/m2", "kg/m/s", "m", "1"), "per square metre"),
+    2: (("J/m", "W/m", "N/m", "N", "kg/m", "kg/s", "m2", "m"), "per metre of depth"),
+}
 EXACT_FIELDS = (("displacement", "m"), ("velocity", "m/s"), ("stress", "Pa"))
 
 
@@ -158,8 +167,21 @@ def observable_exists(name: str) -> bool:
     return name in OBSERVABLES or threshold(name) is not None
 
 
-def describe(name: str) -> Variable:
-    """The variable of a dataset name; KeyError with the name if there is none."""
+def is_total(name: str) -> bool:
+    """Whether a dataset name is a sum over the body."""
+    return name in VARIABLES and VARIABLES[name].units in TOTALS
+
+
+def turn(dimension: int | str | None) -> float:
+    """What an axisymmetric scene computes is per radian: sums over the body are this much more."""
+    return 2 * math.pi if dimension == "axisymmetric" else 1.0
+
+
+def describe(name: str, dimension: int | str | None = None) -> Variable:
+    """The variable of a dataset name; KeyError with the name if there is none. In scenes of dimension 0, 1 and 2 totals are of a part of the body."""
+    if is_total(name) and dimension in PER:
+        (units, of), whole = PER[dimension], VARIABLES[name]
+        return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {of}")
     if name in VARIABLES:
         return VARIABLES[name]
     if found := threshold(name):

@@ -121,8 +121,7 @@ def stack(experiment: Any, name: str, body: Any, one: Scales) -> Offer | str:
     data["output"]["probes"] = {probe: [x[-1]] for probe, x in experiment.output.probes.items()}
     if "offset" in data["method"]:
         data["method"]["offset"] = [experiment.method.offset[-1]]
-    factor = body.shape.radius**2 * (0.5 if experiment.grid.dimension == "axisymmetric" else math.pi)
-    return Offer("1-D", "the radius: nothing varies there", loaded(data, experiment), 0.0, factor)
+    return Offer("1-D", "the radius: nothing varies there", loaded(data, experiment), 0.0, math.pi * body.shape.radius**2)
 
 
 def axisymmetric(experiment: Any, left: float) -> Offer | str:
@@ -160,7 +159,7 @@ def solid(experiment: Any, name: str, body: Any, given: list[dict]) -> Offer:
     data["grid"] |= {"dimension": "axisymmetric", "size": [rims(experiment, centre, body.shape.radius), experiment.grid.size[2]]}
     data["bodies"][name]["shape"] = {body.shape.kind: shape}
     places = {probe: [math.hypot(x[0] - centre[0], x[1] - centre[1]), x[2]] for probe, x in experiment.output.probes.items()}
-    return revolve(experiment, data, places, experiment.method.offset[-1:], 2 * math.pi)
+    return revolve(experiment, data, places, experiment.method.offset[-1:], 1.0)
 
 
 def disc(experiment: Any, name: str, body: Any, given: list[dict]) -> Offer:
@@ -172,7 +171,7 @@ def disc(experiment: Any, name: str, body: Any, given: list[dict]) -> Offer:
     data["bodies"][name]["shape"] = {"box": {"lower": [inner, 0.0], "upper": [outer, THICK * cell]}}
     middle = THICK * cell / 2
     places = {probe: [math.dist(x, body.shape.centre), middle] for probe, x in experiment.output.probes.items()}
-    return revolve(experiment, data, places, (0.0,), 2 * math.pi / (THICK * cell))
+    return revolve(experiment, data, places, (0.0,), 1 / (THICK * cell))
 
 
 def revolve(experiment: Any, data: dict, probes: dict, shift: tuple, factor: float) -> Offer:

@@ -48,6 +48,4 @@ def lumped(experiment: Any, left: float) -> Offer | str:
     data["output"]["probes"] = {probe: [] for probe in experiment.output.probes}
     data.pop("method")
     error = uneven(one) * (MEAN if want.means_only else 1.0) + own(experiment)
-    shape = experiment.grid.dimension
-    factor = one.volume / (2 * math.pi if shape == "axisymmetric" else 1.0)
-    return Offer("lumped", f"conduction inside {name}: one temperature", loaded(data, experiment), error, factor)
+    return Offer("lumped", f"conduction inside {name}: one temperature", loaded(data, experiment), error, one.volume)

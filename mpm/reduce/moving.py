@@ -137,7 +137,7 @@ def revolved(experiment: Any) -> Offer | str:
     transits = one.wave * experiment.time.end / min(one.extent)
     error = max(BOTH, DRIFT * transits) * (cell / min(body.shape.radius, max(one.extent) / 2)) ** 2
     lost = frozenset(stem + "r" for stem in DIRECTED)
-    return Offer("axisymmetric", "the angle: nothing varies round the axis", loaded(data, experiment), error, 2 * math.pi, renamed({"z": "z"}), lost,
+    return Offer("axisymmetric", "the angle: nothing varies round the axis", loaded(data, experiment), error, 1.0, renamed({"z": "z"}), lost,
                  lambda run: touches(run, rim, cell))  # fmt: skip
 
 

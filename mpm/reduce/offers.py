@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from mpm.config.boundary import EXCHANGES
+from mpm.records.variables import is_total
 from mpm.scene.scales import Scales, scales, span
 
-EXTENSIVE = ("heat_total", "heat_exchanged", "heat_ledger", "mass_total", "volume_total", "energy_kinetic", "energy_elastic", "energy_total",
-             "dissipation_total")  # fmt: skip
 HEAT = ("temperature", "heat", "time_to")
 
 
@@ -20,7 +19,7 @@ class Offer:
     """A smaller model of an experiment.
 
     error    its own estimate of what it changes in what is asked for; None where it has none
-    factor   by which sums over the body (heat, mass, energy) are multiplied on the way back: 2 pi from per radian, a depth from per metre
+    factor   by which sums over the body (heat, mass, energy) are multiplied on the way back: a depth from per metre
     places   series of the larger model that symmetry gives: name -> function of the smaller one's series
     doubt    looks at the smaller model's run: a sentence why it cannot stand, or nothing
     """
@@ -36,7 +35,7 @@ class Offer:
 
     def back(self, run: Any) -> Any:
         """The run under the names and in the sums of the larger model."""
-        sums = {name: values * self.factor if name in EXTENSIVE or name.startswith("momentum_") else values for name, values in run.series.items()}
+        sums = {name: values * self.factor if is_total(name) else values for name, values in run.series.items()}
         series = {name: values for name, values in sums.items() if name not in self.lost} | {name: made(sums) for name, made in self.places.items()}
         run.finals = {name: value for name, value in run.finals.items() if name not in run.series}
         run.series = series

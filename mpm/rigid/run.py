@@ -153,7 +153,7 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     snapshots   (times (S,), points (P, d)): temperatures there in `RigidRun.snapshots`, nan outside the bodies
     reference   temperature at which heat content counts as zero [K]; the first body's start unless given
     keeper      mpm.memory: the run goes on where it was cut, with the same bits
-    Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric).
+    Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric; mpm.runner makes the latter whole).
     """
     start = time.perf_counter()
     before = (keeper.found if keeper is not None else None) or {"done": [], "drive": None, "again": 0, "spent": 0.0}

@@ -21,9 +21,15 @@ AXES = ("x", "r", "y", "z")
 TEXTS = ("error", "advice", "outcome")
 
 
-def described(name: str, dims: tuple[str, ...], data: Any, **more: Any) -> Array:
-    """An array with the units and the long name of the table."""
-    found = describe(name)
+def dimension_of(plan: Any) -> int | str | None:
+    """The dimension of the scene; None where it is swept, as totals have no one unit then."""
+    swept = any(coordinate.config_path.startswith("grid.dimension") for dim in plan.dims for coordinate in dim.coords)
+    return plan.cases[0].experiment.grid.dimension if plan.cases and not swept else None
+
+
+def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, **more: Any) -> Array:
+    """An array with the units and the long name of the table, for scenes of one dimension."""
+    found = describe(name, dimension)
     return Array(dims, data, {"units": found.units, "long_name": found.long_name, **more})
 
 
@@ -32,6 +38,7 @@ class Table:
 
     def __init__(self, plan: Any, files: dict[str, str] | None = None, outside: bool = False):
         self.plan, self.files, self.outside = plan, files or {}, outside
+        self.dimension = dimension_of(plan)
         self.dims = tuple(dim.name for dim in plan.dims)
         self.shape = tuple(dim.size for dim in plan.dims)
         self.count = math.prod(self.shape)
@@ -120,7 +127,7 @@ class Table:
         columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "warnings", "run_id")} | {"warning_flags": self.flags}
         columns |= self.numbers | {"attempts": self.attempts}
         columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
-        group = Group({name: described(name, self.dims, self.full(values), **meanings.get(name, {})) for name, values in columns.items()})
+        group = Group({name: described(name, self.dims, self.full(values), self.dimension, **meanings.get(name, {})) for name, values in columns.items()})
         return with_axes(group, planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
 
     def series(self, shards: list[str] | None = None) -> Group:
@@ -131,7 +138,7 @@ class Table:
             return group
         group.variables["time"] = described("time", ("time",), time, standard_name="time", axis="T")
         for name, values in columns.items():
-            group.variables[name] = described(name, (*self.dims, "time"), self.full(values))
+            group.variables[name] = described(name, (*self.dims, "time"), self.full(values), self.dimension)
         if shards:
             about = {"units": "1", "long_name": "file that holds the series of these points, beside this one"}
             group.variables["file"] = Array((self.dims[0],), np.array(shards, dtype=object), about)
@@ -186,7 +193,7 @@ class Table:
         group.variables["row_start"] = described("row_start", (*self.dims, "snapshot"), self.full(starts))
         for name, parts in rows.items():
             values = np.concatenate(parts)
-            group.variables[name] = described(name, ("obs", "direction")[: values.ndim], values)
+            group.variables[name] = described(name, ("obs", "direction")[: values.ndim], values, self.dimension)
         return with_axes(group, planned(self.plan))
 
     def elsewhere(self) -> Group:
