@@ -16,6 +16,7 @@ from mpm.memory import Turn
 from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.inventory import physics
+from mpm.scene.refusal import SceneError
 from mpm.state import Run
 
 
@@ -32,7 +33,7 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
         turns = itertools.count()
         run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, keeper and Turn(keeper, next(turns)), threads))
         run.finals |= misfits(experiment, run)
-        return run
+        return complete(experiment, run)
     return run_named(experiment, beat, compare, keeper, threads)
 
 
@@ -90,6 +91,22 @@ def told(experiment, run: Run) -> Run:
     run.facts["physics"] = physics(experiment)
     run.facts["warnings"] = [*run.facts.get("warnings", ()), *review(experiment, run)]
     run.finals |= misfits(experiment, run)
+    return complete(experiment, run)
+
+
+def complete(experiment, run: Run) -> Run:
+    """The run; SceneError by name where it completed, and lacks something that the config asks for."""
+    from mpm.records.variables import dataset_name
+
+    output, shots, have = experiment.output, experiment.output.snapshots, {*run.series, *run.finals}
+    wanted = [(f"observables.{name}", dataset_name(name) in have) for name in output.observables]
+    wanted += [(f"probes.{name}", f"temperature_{name}" in have) for name in output.probes]
+    for kind, fields in (("grid", run.grid), ("particles", run.particles[0] if run.particles else {})) if shots is not None else ():
+        stems = {*fields, *(name.rpartition("_")[0] for name in fields)}  # a vector has a field a direction
+        wanted += [(f"snapshots.{kind}.{name}", name in stems) for name in getattr(shots, kind)]
+    lacking = [name for name, there in wanted if not there]
+    if run.outcome.ok and lacking:
+        raise SceneError(f"output.{', output.'.join(lacking)}: asked for, and this model does not tell {'it' if len(lacking) == 1 else 'them'}")
     return run
 
 

@@ -10,7 +10,8 @@ from mpm.config.rules_scene import heats, moves, plain_names, vector
 from mpm.config.shapes_fit import bounds, home, misfits
 
 MOST_SAMPLES, MOST_NAMED = 10**6, 4
-OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff")
+OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff",
+             "mass", "volume")  # fmt: skip
 
 
 def clock(experiment: Any) -> Iterator[Finding]:
@@ -32,6 +33,8 @@ def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
     for index, (x, length) in enumerate(zip(point, experiment.grid.size, strict=False) if not wrong else ()):
         if not 0 <= x <= length:
             yield Finding((*path, index), "the probe lies outside the domain", f"0 to {length:g} [m]", given=x)
+    if not wrong and experiment.grid.dimension != 0 and not known(heats, experiment):
+        yield Finding(path, "no body has heat, and a probe tells a temperature", "a heat section in the material of a body, or no probe", on_key=True)
 
 
 def probe_home(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
@@ -100,11 +103,15 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
 def snapshots(experiment: Any) -> Iterator[Finding]:
     from mpm.records.variables import FIELDS_GRID, FIELDS_PARTICLES
 
-    shots = experiment.output.snapshots
+    shots, still = experiment.output.snapshots, not known(moves, experiment)
     for key, allowed in (("grid", FIELDS_GRID), ("particles", FIELDS_PARTICLES)) if shots is not None else ():
         for index, name in enumerate(getattr(shots, key)):
+            path = ("output", "snapshots", key, index)
             if name not in allowed:
-                yield Finding(("output", "snapshots", key, index), "unknown field", list(allowed), near(name, allowed), given=name)
+                yield Finding(path, "unknown field", list(allowed), near(name, allowed), given=name)
+            elif still and (key, name) != ("grid", "temperature"):
+                what = "has no particles" if key == "particles" else "has a temperature alone"
+                yield Finding(path, f"a body without `elastic` does not move, and {what}", "grid: [temperature]", given=name)
 
 
 def exact(experiment: Any) -> Iterator[Finding]:
