@@ -6,6 +6,7 @@ from mpm_cli.talk import document, say
 
 def info(as_json: Json = False) -> None:
     """Versions, source, machine, threads, cache."""
+    from mpm import linking
     from mpm.jit import CACHE
     from mpm.records.provenance import git_revision, machine, source_hash, versions
 
@@ -16,6 +17,7 @@ def info(as_json: Json = False) -> None:
         "git_revision": git_revision(),
         "machine": machine(),
         "threads": "one a worker process; workers by --jobs",
+        "compiling": "one module a kernel" if linking.stock else f"Numba's own way: only {linking.tried()} were tried",
         "cache": {"folder": CACHE, "files": len(files), "bytes": sum(path.stat().st_size for path in files)},
     }
     if as_json:

@@ -10,6 +10,7 @@ from mpm_cli.talk import end
 
 from mpm.sweep.report import Reporter
 
+LONG = 2.0  # s of compiling that are worth a line of their own
 LEAVE = 1.5  # s that a run has to stop after the first signal
 
 
@@ -36,6 +37,7 @@ class Plain(Reporter):
     def __init__(self, stream: TextIO, failures_only: bool = False):
         self.stream, self.failures_only = stream, failures_only
         self.total = self.done = 0
+        self.compiled = ""  # what was last said to be compiled
 
     def write(self, text: str) -> None:
         self.stream.write(text + "\n")
@@ -50,6 +52,12 @@ class Plain(Reporter):
         self.done += not again
         if not self.failures_only or line["status"] != 0:
             self.write((f"[{self.done}/{self.total}] " if self.total else "") + told(label, line, again))
+
+    def compiling(self, text: str, expected: float) -> None:
+        what = text.partition(":")[0]
+        if what and what != self.compiled and expected > LONG and not self.failures_only:
+            self.write(f"{what}, about {expected:.0f} s")
+        self.compiled = what or self.compiled
 
     def note(self, text: str) -> None:
         self.write(text)
@@ -89,6 +97,10 @@ class Bar(Reporter):
             self.failed += not again
             self.say(told(label, line, again))
         self.progress.update(self.task, completed=self.done)
+
+    def compiling(self, text: str, expected: float) -> None:
+        if text:
+            self.progress.update(self.task, description=text)
 
     def note(self, text: str) -> None:
         self.say(text)
@@ -145,8 +157,14 @@ class Single:
         self.reporter.beat({"": fraction})
         return bool(self.stopped)
 
-    def finished(self, name: str, record: Any) -> None:
+    def compiling(self, text: str, expected: float, took: float) -> None:
+        self.reporter.compiling(text, expected)
+
+    def finished(self, name: str, record: Any, compiled: float) -> None:
+        """The record is written; `compiled` seconds went into compiling, which the record's wall time leaves out."""
         self.reporter.finished(name, record.line, False)
+        if compiled >= LONG:
+            self.reporter.note(f"compiling, once on this machine, took {compiled:.1f} s more")
         if record.advice:
             self.reporter.note(record.advice)
         self.reporter.close()

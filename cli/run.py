@@ -29,6 +29,7 @@ def run(
     checkpoint where it was stopped or killed. A sweep over the same folder shares its points.
     Exit codes: 0 ok; 2 usage or config; 3 warnings, with --strict; 4 the point failed; 130 Ctrl-C; 143 SIGTERM.
     """
+    from mpm import compiling
     from mpm.records.checkpoint import EVERY
     from mpm.records.variables import OK, STATUS
     from mpm.sweep.alone import run_in
@@ -40,14 +41,15 @@ def run(
     more = {"rerun": rerun, "every": checkpoint or EVERY, "threads": threads, "smoke": smoke, "max_runs": max_runs}
     try:
         with signals(progress.signal):
-            one = run_in(experiment, folder, progress.beat, progress.note, **more)
+            with compiling.say(progress.compiling):
+                one = run_in(experiment, folder, progress.beat, progress.note, **more)
     finally:
         progress.close()
     record = one.record
     if progress.stopped:
         leave_at_once()
     if one.ran:
-        progress.finished(experiment.name, record)
+        progress.finished(experiment.name, record, compiling.seconds())
     else:
         say(f"{experiment.name}: {record.error or 'ok'}; it was there already, and --rerun all runs it again", as_json, quiet)
     if progress.stopped:

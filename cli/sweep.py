@@ -133,6 +133,7 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
         "failures": failures,
         "stopped": result.stopped or None,
         "seconds": result.seconds,
+        "compiling_seconds": result.compiling,
         "exit_code": result.exit_code,
     }
 

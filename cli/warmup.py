@@ -10,7 +10,7 @@ Configs = Annotated[list[Path] | None, typer.Argument(metavar="[CONFIG...]", hel
 
 
 def warmup(configs: Configs = None) -> None:
-    """Compile now what configs need."""
+    """Compile now what configs need, so that their first run does not wait. A folder stands for all configs in it."""
     import importlib
     import time
 
@@ -18,6 +18,7 @@ def warmup(configs: Configs = None) -> None:
     from mpm.sweep import engine
     from mpm.sweep.warming import scenes
 
+    configs = [path for place in configs or () for path in (sorted(place.glob("*.yaml")) if place.is_dir() else [place])]
     experiments = {str(config): load(config) for config in configs} if configs else {name: load(scene) for name, scene in scenes().items()}
     runner = importlib.import_module(engine.RUNNER)
     for name, experiment in experiments.items():

@@ -9,6 +9,7 @@ import hashlib
 import re
 from pathlib import Path
 
+NO_PART = {"cache", "compiling", "memory"}  # rooms that kernels' modules import, and that no kernel can contain
 PACKAGE = Path(__file__).parent
 BELOW = re.compile(r"^(?:from|import) mpm\.(\w+)|^from mpm import \(?([\w, ]+)", re.MULTILINE)  # imports at the top of a module: kernels see no others
 
@@ -45,7 +46,7 @@ def contained(room: str) -> frozenset[str]:
         found.add(one)
         for text in rooms()[one].values():
             named = (name.strip() for pair in BELOW.findall(text) for name in (pair[0] or pair[1]).split(","))
-            waiting |= {name for name in named if name in rooms()} - found
+            waiting |= {name for name in named if name in rooms()} - found - NO_PART
     return frozenset(found)
 
 

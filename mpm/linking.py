@@ -22,6 +22,8 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher, _FunctionCompiler
 from numba.core.targetconfig import TargetConfig
 
+from mpm import compiling
+
 TESTED = (0, 66), (0, 68)  # first and last (major, minor) whose internals were tried with the whole test suite
 
 
@@ -29,6 +31,7 @@ class Building(threading.local):
     """What this thread compiles: 0 nothing of ours, 1 a kernel that Python called, 2 and more its callees."""
 
     depth = 0
+    kernel = None  # its Python function
 
 
 class Entry:
@@ -36,13 +39,17 @@ class Entry:
 
 
 building = Building()
-listeners: list = []  # called with the name of each function that was typed and lowered, and with None when a kernel is ready
+listeners = [compiling.spent.hear]  # called with a kernel and itself as it begins, with each function that was lowered for it, and with None when it is ready
 subroutines: dict = {}  # what Numba's own operators compile for our kernels, apart from what they compile for others
-stock = {}  # the methods replaced
+stock: dict = {}  # Numba's own methods, by place, where they are replaced
 
 
 def within_tested(version: str = numba.__version__) -> bool:
     return TESTED[0] <= tuple(int(part) for part in version.split(".")[:2]) <= TESTED[1]
+
+
+def tried() -> str:
+    return " to ".join(".".join(map(str, version)) for version in TESTED)
 
 
 def ours(dispatcher) -> bool:
@@ -56,6 +63,7 @@ def kernel_under_way(dispatcher):
     collecting, others = gc.isenabled(), context.cached_internal_func
     gc.disable()
     building.depth, context.cached_internal_func = 1, subroutines
+    building.kernel = dispatcher.py_func
     try:
         yield
     finally:
@@ -71,11 +79,9 @@ def compile_(dispatcher, sig):
             return compile_callee(dispatcher, sig)
         args, _ = sigutils.normalize_signature(sig)
         if not ours(dispatcher) or tuple(args) in dispatcher.overloads:
-            return stock["compile"](dispatcher, sig)
+            return stock["Dispatcher.compile"](dispatcher, sig)
         with kernel_under_way(dispatcher):
-            entry = stock["compile"](dispatcher, sig)
-        tell(None)
-        return entry
+            return stock["Dispatcher.compile"](dispatcher, sig)
 
 
 def compile_callee(dispatcher, sig):
@@ -93,7 +99,7 @@ def compile_callee(dispatcher, sig):
         entry = Entry()
         dispatcher.targetctx.insert_user_function(entry, result.fndesc, [result.library])
         callees[tuple(args)] = result._replace(entry_point=entry)
-        tell(dispatcher.py_func.__name__)
+        tell(dispatcher.py_func)
     return callees[tuple(args)].entry_point
 
 
@@ -101,15 +107,25 @@ def callees_of(dispatcher) -> dict:
     return dispatcher.__dict__.setdefault("_callees", {})
 
 
-def tell(name: str | None) -> None:
+def tell(function) -> None:
     for listener in listeners:
-        listener(name)
+        listener(building.kernel, function)
+
+
+def compile_kernel(compiler, args, return_type):
+    """_FunctionCompiler.compile: told of, where it is a kernel that the cache did not hold."""
+    if building.depth != 1:
+        return stock["_FunctionCompiler.compile"](compiler, args, return_type)
+    tell(building.kernel)
+    result = stock["_FunctionCompiler.compile"](compiler, args, return_type)
+    tell(None)
+    return result
 
 
 def get_overload(dispatcher, sig):
     """Dispatcher.get_overload."""
     if not building.depth:
-        return stock["get_overload"](dispatcher, sig)
+        return stock["Dispatcher.get_overload"](dispatcher, sig)
     args, _ = sigutils.normalize_signature(sig)
     return callees_of(dispatcher)[tuple(args)].entry_point
 
@@ -117,7 +133,7 @@ def get_overload(dispatcher, sig):
 def nopython_signatures(dispatcher):
     """Dispatcher.nopython_signatures."""
     if not building.depth:
-        return stock["nopython_signatures"].fget(dispatcher)
+        return stock["Dispatcher.nopython_signatures"].fget(dispatcher)
     return [result.signature for result in callees_of(dispatcher).values()]
 
 
@@ -126,7 +142,7 @@ def get_call_template(dispatcher, args, kws):
     if building.depth and ours(dispatcher):
         args = tuple(plain(kind) for kind in args)
         kws = {name: plain(kind) for name, kind in kws.items()}
-    return stock["get_call_template"](dispatcher, args, kws)
+    return stock["Dispatcher.get_call_template"](dispatcher, args, kws)
 
 
 def plain(kind):
@@ -137,7 +153,7 @@ def customize_flags(compiler, flags):
     """_FunctionCompiler._customize_flags."""
     if building.depth > 1:
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
-    return stock["_customize_flags"](compiler, flags)
+    return stock["_FunctionCompiler._customize_flags"](compiler, flags)
 
 
 def add_linking_library(library, other):
@@ -145,13 +161,13 @@ def add_linking_library(library, other):
     if building.depth:
         library._linking_libraries.append(other)
     else:
-        stock["add_linking_library"](library, other)
+        stock["CPUCodeLibrary.add_linking_library"](library, other)
 
 
 def finalize(library):
     """CPUCodeLibrary.finalize: link everything that the kernel reaches, once, then optimise and emit as Numba does."""
     if not building.depth:
-        return stock["finalize"](library)
+        return stock["CPUCodeLibrary.finalize"](library)
     library._raise_if_finalized()
     module = library._final_module
     called_from_python = {function.name for function in module.functions if not function.is_declaration}
@@ -189,7 +205,7 @@ def mergeable(module):
 
 def same_flags(flags, other):
     """TargetConfig.__eq__, asked a hundred thousand times a kernel: most often the same options were set to the same values."""
-    return (type(flags) is type(other) and flags._values == other._values) or stock["__eq__"](flags, other)
+    return (type(flags) is type(other) and flags._values == other._values) or stock["TargetConfig.__eq__"](flags, other)
 
 
 def hash_of_flags(flags):
@@ -198,10 +214,16 @@ def hash_of_flags(flags):
 
 
 REPLACED = (
-    (Dispatcher, "compile", compile_), (Dispatcher, "get_overload", get_overload), (Dispatcher, "get_call_template", get_call_template),
-    (Dispatcher, "nopython_signatures", property(nopython_signatures)), (_FunctionCompiler, "_customize_flags", customize_flags),
-    (CPUCodeLibrary, "add_linking_library", add_linking_library), (CPUCodeLibrary, "finalize", finalize),
-    (TargetConfig, "__eq__", same_flags), (TargetConfig, "__hash__", hash_of_flags),
+    (Dispatcher, "compile", compile_),
+    (Dispatcher, "get_overload", get_overload),
+    (Dispatcher, "get_call_template", get_call_template),
+    (Dispatcher, "nopython_signatures", property(nopython_signatures)),
+    (_FunctionCompiler, "compile", compile_kernel),
+    (_FunctionCompiler, "_customize_flags", customize_flags),
+    (CPUCodeLibrary, "add_linking_library", add_linking_library),
+    (CPUCodeLibrary, "finalize", finalize),
+    (TargetConfig, "__eq__", same_flags),
+    (TargetConfig, "__hash__", hash_of_flags),
 )
 
 
@@ -209,6 +231,6 @@ def install() -> bool:
     """Replace Numba's methods where its version was tested; whether they are."""
     if not stock and within_tested():
         for owner, name, new in REPLACED:
-            stock[name] = inspect.getattr_static(owner, name)
+            stock[f"{owner.__name__}.{name}"] = inspect.getattr_static(owner, name)
             setattr(owner, name, new)
     return bool(stock)

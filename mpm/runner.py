@@ -1,23 +1,38 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
 run_point(experiment, beat, compare, keeper, threads) -> Run      run_points(experiments) -> list of Runs, for material points
-warm(experiment): compile what it needs      estimate(experiment): what it will cost (mpm.costs)
+warm(experiment): compile what it needs      compile_ahead(experiment): its two large kernels, at once
+estimate(experiment): what it will cost (mpm.costs)
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
 
 import itertools
+import json
+import subprocess
+import sys
 
 import numpy as np
 
+from mpm import compiling
 from mpm.costs import estimate
 from mpm.integrate.order import SHARED
 from mpm.memory import Turn
+from mpm.records.provenance import cores
 from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.inventory import physics
 from mpm.scene.refusal import SceneError
 from mpm.state import Run
+
+WORTH_A_PROCESS = 5.0  # s of compiling from which another process, which starts in 1 to 2 s, saves time
+HEAT_STEP = """
+import json, sys
+sys.path[:] = json.loads(sys.argv[1])
+from mpm.config import restore
+from mpm.runner import compile_heat
+compile_heat(restore(json.load(sys.stdin)))
+"""
 
 
 def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
@@ -41,7 +56,7 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
     """Run the model that the config names."""
     from mpm.verification import exact_solution
 
-    exact, shared = exact_solution(experiment), False
+    exact, shared, before = exact_solution(experiment), False, compiling.seconds()
     if experiment.grid.dimension == 0:
         from mpm.scene.point import run_zero
 
@@ -65,6 +80,8 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
         run.facts["threads"] = threads if shared else 1
         if not shared:
             run.facts["threads_idle"] = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
+    run.wall_time = max(0.0, run.wall_time - (compiling.seconds() - before))
+    compiling.remember(experiment, again=compiling.seconds() > before)
     return told(experiment, run)
 
 
@@ -128,22 +145,73 @@ def warm(experiment) -> None:
         from mpm.reduce.choose import likely
 
         experiment = likely(experiment)
+    compile_ahead(experiment)
     short = experiment.resolved()
-    if experiment.grid.dimension == 0:
-        short["time"]["end"] = experiment.time.end * 1e-3
-    elif experiment.moving:
-        from mpm.integrate.timestep import limits
-        from mpm.scene.build import build
-        from mpm.simulation import Clock
-
-        scene = build(experiment)
-        step = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports).step() * experiment.time.scale
-        short["time"]["end"] = min(experiment.time.end, step)
+    if experiment.moving:
+        scene, clock = at_start(experiment)
+        short["time"]["end"] = min(experiment.time.end, limits_of(scene, clock).step() * experiment.time.scale)
     else:
         short["time"]["end"] = experiment.time.end * 1e-3
     short["output"]["every"] = short["time"]["end"]
     short["sweep"] = None
     run_point(load(short))
+
+
+def compile_ahead(experiment) -> None:
+    """Where a scene needs the mechanical and the heat step, neither is in the cache and there are two cores: compile both at once.
+
+    A process of its own compiles the heat step, this one the mechanical step; later calls find both in the cache.
+    """
+    if cores() < 2 or not experiment.moving or experiment.grid.dimension == 0 or compiling.expected(experiment) < WORTH_A_PROCESS:
+        return
+    if getattr(experiment.model, "kind", "full") == "auto" or not any(material.heat is not None for material in experiment.materials.values()):
+        return
+    helper = subprocess.Popen(
+        [sys.executable, "-P", "-c", HEAT_STEP, json.dumps(sys.path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
+    )
+    try:
+        helper.stdin.write(json.dumps(experiment.resolved()))
+        helper.stdin.close()
+        compile_step(experiment)
+        helper.wait()
+    except Exception:  # whatever is wrong here the run itself will meet, and tell
+        pass
+    finally:
+        if helper.poll() is None:
+            helper.kill()
+            helper.wait()
+
+
+def at_start(experiment):
+    from mpm.scene.build import build
+    from mpm.simulation import Clock
+
+    scene = build(experiment)
+    return scene, Clock(scene)
+
+
+def limits_of(scene, clock):
+    from mpm.boundary import directions
+    from mpm.integrate.timestep import limits
+
+    return limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+
+
+def compile_step(experiment) -> None:
+    """Compile the mechanical step, by a block of no steps."""
+    from mpm.simulation import advance_block, work_arrays
+
+    scene, clock = at_start(experiment)
+    advance_block(scene, clock, work_arrays(scene), limits_of(scene, clock).step(), 0)
+
+
+def compile_heat(experiment) -> None:
+    """Compile the heat step, by one of the pace that a run begins with."""
+    from mpm.simulation import warm_bodies, work_arrays
+
+    scene, clock = at_start(experiment)
+    now = limits_of(scene, clock)
+    warm_bodies(scene, clock, work_arrays(scene), min(scene.heat_step or now.pace, float(scene.times[1])), now)
 
 
 __all__ = ["estimate", "run_point", "run_points", "warm"]

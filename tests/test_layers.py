@@ -14,7 +14,8 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "cache": 0, "fingerprint": 0, "linking": 0, "jit": 0, "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
+    "cache": 0, "fingerprint": 0, "linking": 0, "jit": 0, "compiling": 0,
+    "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "follow": 2, "integrate": 2, "total": 2,
     "error": 2, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
@@ -23,6 +24,7 @@ LAYERS = {
     "study": 6, "plots": 6,
 }  # fmt: skip
 PEERS = {
+    "compiling": {"fingerprint", "jit"}, "linking": {"compiling"},
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene

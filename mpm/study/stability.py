@@ -19,8 +19,9 @@ from mpm.config.sweep import Sweep
 from mpm.records.variables import OK
 from mpm.sweep.api import default_out, execute
 from mpm.sweep.cases import plan as plan_of
-from mpm.sweep.engine import Options, Result
+from mpm.sweep.engine import Options
 from mpm.sweep.report import Reporter
+from mpm.sweep.result import Result
 from mpm.sweep.store import Refused, Store
 
 CUTS = 4  # parts of a bracket a round: fewer rounds than halving, and workers have something to share

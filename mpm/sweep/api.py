@@ -4,6 +4,7 @@
 """
 
 import contextlib
+import importlib
 import io
 import signal
 import threading
@@ -14,15 +15,19 @@ from typing import Any
 
 from mpm.records.provenance import cores
 from mpm.sweep import engine
-from mpm.sweep.engine import Engine, Options, Result
+from mpm.sweep.engine import Engine, Options
 from mpm.sweep.gather import Gather, NotCollected
 from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
 from mpm.sweep.report import Reporter
+from mpm.sweep.result import Result
 from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, counts, exit_code, stale, warned
 
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+TOLD = 1.0  # s of compiling that are worth a line
 
 
 def default_out(experiment: Any) -> Path:
@@ -81,8 +86,11 @@ def execute(
     stopped = supervisor.broken or supervisor.stopped
     if supervisor.broken:
         reporter.note(supervisor.broken)
+    if supervisor.compiling >= TOLD:
+        reporter.note(f"{supervisor.compiling:.1f} s went into compiling, once on this machine")
     code, hurried = exit_code(found, supervisor.stopped), supervisor.signals > 0
-    return Result(store.out, lines, found, supervisor.ran, stopped, code, time.monotonic() - began, collected, hurried, warned(points, lines))
+    took, told = time.monotonic() - began, warned(points, lines)
+    return Result(store.out, lines, found, supervisor.ran, stopped, code, took, collected, hurried, told, supervisor.compiling)
 
 
 @contextlib.contextmanager
@@ -189,9 +197,17 @@ def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None,
     from mpm.sweep.worker import compute
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
+    compile_ahead(case.experiment)
     record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, None, threads, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     return dataset(alone, about_one(experiment, case, record), {alone.cases[0].run_id: record}), record
+
+
+def compile_ahead(experiment: Any) -> None:
+    """What a run in this process needs, on two cores, where the runner can."""
+    ahead = getattr(importlib.import_module(engine.RUNNER), "compile_ahead", None)
+    if ahead is not None:
+        ahead(experiment)
 
 
 def tree_of(source: Any) -> Any:

@@ -16,10 +16,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from mpm import compiling
 from mpm.records.checkpoint import EVERY
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
-from mpm.sweep.executors import Beat, Done, Event, Executor, Job, Lost, Note, Task
+from mpm.sweep.executors import Beat, Compiling, Done, Event, Executor, Job, Lost, Note, Task
 from mpm.sweep.gather import Gather
 from mpm.sweep.lines import Lines
 from mpm.sweep.pace import Pace
@@ -62,22 +63,6 @@ class Options:
 
 
 @dataclass
-class Result:
-    """What a sweep came to."""
-
-    out: Any
-    lines: Lines
-    counts: dict[str, int]
-    ran: int
-    stopped: str
-    exit_code: int
-    seconds: float
-    collected: bool = False
-    hurried: bool = False  # told to leave at once
-    warned: dict[str, int] = field(default_factory=dict)  # as tally.warned gives it
-
-
-@dataclass
 class Running:
     """A task that a worker has."""
 
@@ -101,6 +86,7 @@ class Engine:
         self.attempts: Counter = Counter()
         self.pace, self.names = Pace(), store.batch_names()
         self.failures = self.ran = self.signals = 0
+        self.compiling = 0.0  # s that workers spent on compiling
         self.stopped = self.broken = ""
         self.asked = math.nan  # when all that runs was asked to leave
         self.began = time.monotonic()
@@ -115,6 +101,14 @@ class Engine:
     def run(self, executor: Executor) -> None:
         """Until every due point has a record, or something stops the sweep."""
         self.executor = executor
+        with compiling.say(self.heed_compiling):  # of `Serial`, which runs points in this process
+            self.until_done(executor)
+        for gone in list(self.running.values()):  # stopped, but records may have reached the disk before their news reached us
+            self.news(gone.task)
+        self.running.clear()
+
+    def until_done(self, executor: Executor) -> None:
+        """Hand out and hear, until nothing is due and nothing runs, or the sweep is stopped."""
         try:
             while (self.due and not self.stopped) or self.running:
                 executor.wanted = len(self.running) + (0 if self.stopped else len(self.due))
@@ -127,9 +121,6 @@ class Engine:
                 self.look_at_the_clock()
         finally:
             executor.close()
-        for gone in list(self.running.values()):  # stopped, but records may have reached the disk before their news reached us
-            self.news(gone.task)
-        self.running.clear()
 
     def left(self, executor: Executor) -> bool:
         """The sweep is stopped: ask what runs to leave; whether there is no more time for that."""
@@ -195,6 +186,8 @@ class Engine:
             self.heed(event)
         elif isinstance(event, Note):
             self.reporter.note(event.text)
+        elif isinstance(event, Compiling):
+            self.heed_compiling(event.text, event.expected, event.took)
         elif (gone := self.running.pop(event.task, None)) is None:
             return  # told twice, as a cluster may
         else:
@@ -205,6 +198,11 @@ class Engine:
                 self.lost(gone, event)
             else:
                 self.stop_for_the_disk(event.why)
+
+    def heed_compiling(self, text: str, expected: float, took: float) -> None:
+        """A worker compiles."""
+        self.compiling += took
+        self.reporter.compiling(text, expected)
 
     def heed(self, beat: Beat) -> None:
         """A task is alive. (`Serial` calls this from inside the point, so it must also keep the clock.)"""

@@ -94,7 +94,16 @@ class Note:
     text: str
 
 
-Event = Beat | Done | Lost | Unwritten | Note
+@dataclass(frozen=True)
+class Compiling:
+    """A worker compiles: a sentence, the seconds that it expects the kernel to take, and once it is ready those it took."""
+
+    text: str
+    expected: float
+    took: float
+
+
+Event = Beat | Done | Lost | Unwritten | Note | Compiling
 
 
 class Executor(Protocol):
@@ -172,4 +181,6 @@ def event(message: dict[str, Any]) -> Event:
         return Done(message["task"], tuple(message["lines"]), tuple(message["left"]))
     if kind == "unwritten":
         return Unwritten(message["task"], message["why"])
+    if kind == "compiling":
+        return Compiling(message["text"], message["expected"], message["took"])
     return Note(message["text"])

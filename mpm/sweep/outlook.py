@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mpm import compiling
 from mpm.sweep import engine
 from mpm.sweep.api import default_out, skipped
 from mpm.sweep.room import size
@@ -47,6 +48,7 @@ def outlook(
         "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
         "smaller": smaller(first.experiment, tolerance, heard) if first else None,
         "jobs": jobs,
+        "compiling_seconds": compiling.expected(first.experiment) if first else 0.0,
         "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
         "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
         "memory_bytes": cost["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in cost else None,
@@ -112,6 +114,8 @@ def said(found: dict[str, Any]) -> str:
         told += said_smaller(found["smaller"])
     if "seconds" in cost:
         told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
+        if found["compiling_seconds"]:
+            told.append(f"          not compiled yet: about {found['compiling_seconds']:.0f} s more, once on this machine")
         told.append(f"memory    {size(cost['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
     return "\n".join(told)
 

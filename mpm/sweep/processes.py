@@ -162,7 +162,7 @@ class Processes:
         if kind == "warmed":
             child.state = "idle"
             return [Note(message["text"])] if message["text"] else []
-        if kind not in ("beat", "note"):
+        if kind not in ("beat", "note", "compiling"):
             child.state, child.task = "idle", None
         return [event(message)]
 

@@ -15,6 +15,9 @@ class Reporter:
     def finished(self, label: str, line: dict, again: bool) -> None:
         """A point has a record. `label` names it for people (`kappa=0.2 beta=5`); `again`: it will be tried once more."""
 
+    def compiling(self, text: str, expected: float) -> None:
+        """A kernel is compiled: what is done of it and what is left; `expected` seconds in all. Empty when it is ready."""
+
     def note(self, text: str) -> None:
         """Something worth a line."""
 

@@ -176,6 +176,12 @@ class Worker:
             importlib.import_module(module)
         config = importlib.import_module("mpm.config")
         self.tell({"is": "ready", "words": words})
+        compiling = importlib.import_module("mpm.compiling")
+        with compiling.say(self.compiling):
+            self.obey(runner, config)
+
+    def obey(self, runner: Any, config: Any) -> None:
+        """One order after the other, until told to quit."""
         while (order := self.orders.get())["do"] != "quit":
             if order["do"] == "warm":
                 try:
@@ -186,6 +192,12 @@ class Worker:
             else:
                 task = Task.of(order["task"])
                 self.tell(perform(task, self.runner, functools.partial(self.beat, task.id), note=self.note))
+
+    def compiling(self, text: str, expected: float, took: float) -> None:
+        """What is compiled, now and then; how long it took, when it is ready."""
+        if took or time.monotonic() - self.told > QUIET:
+            self.told = time.monotonic()
+            self.tell({"is": "compiling", "text": text, "expected": expected, "took": took})
 
     def note(self, text: str) -> None:
         """Something to tell the user."""

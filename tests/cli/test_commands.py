@@ -201,8 +201,8 @@ def test_a_figure_that_fails_does_not_hide_the_results(mpm, write, monkeypatch):
 def test_a_sweep_that_left_without_a_dataset_names_none(tmp_path):
     from mpm_cli.sweep import summary, words
 
-    from mpm.sweep.engine import Result
     from mpm.sweep.lines import Lines
+    from mpm.sweep.result import Result
 
     counts = {"ok": 300, "pending": 1, "failed": 0, "timeout": 0, "killed": 0, "diverged": 0}
     left = Result(tmp_path, Lines([]), counts, 300, "interrupted", 130, 9.0, hurried=True)

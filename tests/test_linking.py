@@ -1,0 +1,88 @@
+"""One module a kernel: what it holds, what it tells, and that Numba's own way gives the same numbers."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpm import linking
+
+ROOT = Path(__file__).parent.parent
+SCENE = {
+    "grid": {"dimension": 1, "size": [0.12], "cell": 0.01},
+    "bodies": {"block": {"shape": {"box": {"lower": [0.02], "upper": [0.1]}}, "temperature": 310.0, "material": "m"}},
+    "materials": {
+        "m": {
+            "density": 1000.0,
+            "elastic": {"hencky": {"E": 1e4, "nu": 0.3}},
+            "heat": {"fourier": {"kappa": 1.0, "alpha": 1000.0}},
+            "expansion": {"linear": {"coefficient": 1e-4, "reference": 300.0}},
+        }
+    },
+    "surfaces": [{"of": "block", "convection": {"beta": 10.0, "outside": 300.0}}],
+    "time": {"end": 0.05},
+}
+RUN = """
+import json, sys
+VERSION
+import mpm.jit
+from mpm import cache, compiling, fingerprint, linking
+held, told = [], []
+linking.listeners.append(lambda kernel, function: held.append((kernel.__module__, function.__module__ if function else "")))
+import mpm
+with compiling.say(lambda text, expected, took: told.append((text, took))):
+    tree = mpm.run(mpm.load(json.load(sys.stdin)))
+astray = sorted({pair for pair in held if pair[1].startswith("mpm.") and pair[1].split(".")[1] not in fingerprint.contained(pair[0].split(".")[1])})
+series = {name: [value.hex() for value in tree["series"][name].values.astype(float).ravel().tolist()] for name in tree["series"].data_vars}
+print(json.dumps({"series": series, "astray": astray, "held": len(held), "told": told, "seconds": compiling.seconds(), "said": cache.words}))
+"""
+
+
+def run(cache, version=""):
+    env = os.environ | {"MPM_CACHE_DIR": str(cache)}
+    code = RUN.replace("VERSION", f"import numba; numba.__version__ = {version!r}" if version else "")
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, input=json.dumps(SCENE), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def cold(tmp_path_factory):
+    cache = tmp_path_factory.mktemp("cache")
+    return cache, run(cache)
+
+
+def test_a_kernel_holds_only_rooms_that_its_cache_is_named_after(cold):
+    assert cold[1]["held"] > 50 and cold[1]["astray"] == []
+
+
+def test_what_is_compiled_is_told_and_timed(cold):
+    told, seconds = cold[1]["told"], cold[1]["seconds"]
+    texts = [text for text, _ in told if text]
+    assert any(text.startswith("compiling the mechanical step, once on this machine: ") for text in texts) and all("functions, " in text for text in texts)
+    assert seconds > 0.5 and sum(took for _, took in told) == pytest.approx(seconds)
+
+
+def test_from_the_cache_nothing_is_compiled_and_all_bits_are_the_same(cold):
+    cache, first = cold
+    again = run(cache)
+    assert again["series"] == first["series"] and again["seconds"] == 0.0 and again["said"] == []
+
+
+@pytest.mark.slow
+def test_numba_of_another_version_compiles_its_own_way_says_so_and_agrees_to_round_off(cold, tmp_path):
+    other = run(tmp_path, version="9.9.9")
+    assert other["held"] == 0 and len(other["said"]) == 1 and "numba 9.9.9 was not tried with mpm" in other["said"][0]
+    for name, values in cold[1]["series"].items():
+        a, b = (np.array([float.fromhex(value) for value in found]) for found in (values, other["series"][name]))
+        assert np.allclose(a, b, rtol=1e-9, atol=1e-12 * max(1.0, np.abs(a).max())), name
+
+
+def test_the_range_of_versions():
+    first, last = linking.TESTED
+    assert linking.within_tested(f"{first[0]}.{first[1]}.0") and linking.within_tested(f"{last[0]}.{last[1]}.9")
+    assert not linking.within_tested(f"{last[0]}.{last[1] + 1}.0") and not linking.within_tested(f"{first[0]}.{first[1] - 1}.9")
