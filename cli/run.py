@@ -39,6 +39,7 @@ def run(
     folder: Path = out or default_out(experiment)
     progress = Single(as_json, quiet)
     more = {"rerun": rerun, "every": checkpoint or EVERY, "threads": threads, "smoke": smoke, "max_runs": max_runs}
+    before = compiling.seconds()
     try:
         with signals(progress.signal):
             with compiling.say(progress.compiling):
@@ -49,7 +50,7 @@ def run(
     if progress.stopped:
         leave_at_once()
     if one.ran:
-        progress.finished(experiment.name, record, compiling.seconds())
+        progress.finished(experiment.name, record, compiling.seconds() - before)
     else:
         say(f"{experiment.name}: {record.error or 'ok'}; it was there already, and --rerun all runs it again", as_json, quiet)
     if progress.stopped:

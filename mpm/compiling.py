@@ -37,7 +37,7 @@ class Spent:
 
     def __init__(self) -> None:
         self.total, self.began, self.functions = 0.0, 0.0, 0
-        self.remembered = False
+        self.begun = self.remembered = False
         self.heard: list[Callable[[str, float, float], None]] = []
 
     def hear(self, compiled: Callable, function: Callable | None) -> None:
@@ -124,6 +124,12 @@ def place(config: dict) -> Path:
     words["grid"] = words.get("grid", {}).get("dimension")
     made = hashlib.sha256(json.dumps([source, words], sort_keys=True, default=str).encode()).hexdigest()[:16]
     return folder() / "known" / made
+
+
+def begun() -> bool:
+    """Whether this was asked before: the first run of a process is the one that may have to compile."""
+    before, spent.begun = spent.begun, True
+    return before
 
 
 def remember(experiment: Any, again: bool) -> None:

@@ -42,6 +42,8 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
     keeper     what the run remembers (mpm.memory), to go on where it was cut; None where nobody keeps it
     threads    that share the work of one large run (mpm.integrate.slabs); the result is the same for any number
     """
+    if not compiling.begun():
+        compile_ahead(experiment)
     if getattr(experiment.model, "kind", "full") == "auto":
         from mpm.reduce.choose import smallest
 
@@ -145,7 +147,6 @@ def warm(experiment) -> None:
         from mpm.reduce.choose import likely
 
         experiment = likely(experiment)
-    compile_ahead(experiment)
     short = experiment.resolved()
     if experiment.moving:
         scene, clock = at_start(experiment)
@@ -174,8 +175,8 @@ def compile_ahead(experiment) -> None:
         helper.stdin.close()
         compile_step(experiment)
         helper.wait()
-    except Exception:  # whatever is wrong here the run itself will meet, and tell
-        pass
+    except OSError:  # the helper has died: the heat step is compiled when it is called
+        return
     finally:
         if helper.poll() is None:
             helper.kill()

@@ -16,7 +16,7 @@ from mpm.records.netcdf import DamagedFile, seal, summary, write_whole
 from mpm.records.provenance import versions
 from mpm.records.variables import PENDING, STATUS
 from mpm.sweep import engine
-from mpm.sweep.api import compile_ahead, sound, swept_paths, taken
+from mpm.sweep.api import sound, swept_paths, taken
 from mpm.sweep.lock import Refused
 from mpm.sweep.room import Room
 from mpm.sweep.store import Store
@@ -71,7 +71,6 @@ def run_in(
         room = Room(store.out, None, far=False)
         if refusal := room.refusal(room.need(case.experiment)):
             raise Refused(f"the point {refusal}; a coarser grid.cell, fewer particles a cell or fewer snapshots need less")
-        compile_ahead(case.experiment)
         keeper = Checkpoint(store.checkpoint(case.run_id), case.run_id, every, note)
         record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, threads, config=case.experiment.resolved())
         if record.outcome == "budget":

@@ -4,7 +4,6 @@
 """
 
 import contextlib
-import importlib
 import io
 import signal
 import threading
@@ -197,17 +196,9 @@ def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None,
     from mpm.sweep.worker import compute
 
     case = plan_of(experiment, max_runs=max_runs).cases[0]
-    compile_ahead(case.experiment)
     record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, None, threads, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
     return dataset(alone, about_one(experiment, case, record), {alone.cases[0].run_id: record}), record
-
-
-def compile_ahead(experiment: Any) -> None:
-    """What a run in this process needs, on two cores, where the runner can."""
-    ahead = getattr(importlib.import_module(engine.RUNNER), "compile_ahead", None)
-    if ahead is not None:
-        ahead(experiment)
 
 
 def tree_of(source: Any) -> Any:
