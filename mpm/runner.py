@@ -149,8 +149,10 @@ def warm(experiment) -> None:
         experiment = likely(experiment)
     short = experiment.resolved()
     if experiment.moving:
+        from mpm.total.drive import present_limits
+
         scene, clock = at_start(experiment)
-        short["time"]["end"] = min(experiment.time.end, limits_of(scene, clock).step() * experiment.time.scale)
+        short["time"]["end"] = min(experiment.time.end, present_limits(scene, clock).step() * experiment.time.scale)
     else:
         short["time"]["end"] = experiment.time.end * 1e-3
     short["output"]["every"] = short["time"]["end"]
@@ -191,27 +193,22 @@ def at_start(experiment):
     return scene, Clock(scene)
 
 
-def limits_of(scene, clock):
-    from mpm.boundary import directions
-    from mpm.integrate.timestep import limits
-
-    return limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-
-
 def compile_step(experiment) -> None:
     """Compile the mechanical step, by a block of no steps."""
     from mpm.simulation import advance_block, work_arrays
+    from mpm.total.drive import advance_references, present_limits
 
     scene, clock = at_start(experiment)
-    advance_block(scene, clock, work_arrays(scene), limits_of(scene, clock).step(), 0)
+    (advance_references if scene.references else advance_block)(scene, clock, work_arrays(scene), present_limits(scene, clock).step(), 0)
 
 
 def compile_heat(experiment) -> None:
     """Compile the heat step, by one of the pace that a run begins with."""
     from mpm.simulation import warm_bodies, work_arrays
+    from mpm.total.drive import present_limits
 
     scene, clock = at_start(experiment)
-    now = limits_of(scene, clock)
+    now = present_limits(scene, clock)
     warm_bodies(scene, clock, work_arrays(scene), min(scene.heat_step or now.pace, float(scene.times[1])), now)
 
 
