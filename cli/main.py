@@ -1,9 +1,9 @@
 """The command `mpm`: registers a file a command, and turns whatever happens into words and an exit code. No user sees a traceback.
 
-Exit codes   0 ok; 1 internal error, disk, or (compare) different; 2 usage or config; 3 some points failed; 4 every point failed; 75, 130, 143 stopped
+Exit codes   0 ok; 1 internal error, disk (stdout's too), or (compare) different; 2 usage or config; 3 some points failed; 4 every point failed;
+75, 130, 143 stopped; 141 all went well, and the reader of the output left
 """
 
-import os
 import sys
 
 import typer
@@ -18,6 +18,7 @@ from mpm_cli.run import run
 from mpm_cli.schema import schema
 from mpm_cli.stability import stability
 from mpm_cli.status import status
+from mpm_cli.streams import streams
 from mpm_cli.sweep import sweep
 from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
@@ -41,7 +42,14 @@ for command in COMMANDS:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command and return its exit code."""
-    arguments = sys.argv[1:] if arguments is None else arguments
+    with streams() as (out, err):
+        code = command_code(sys.argv[1:] if arguments is None else arguments)
+        out.flush()
+    return code or out.code or err.code
+
+
+def command_code(arguments: list[str]) -> int:
+    """The exit code of a command, without what becomes of its words."""
     try:
         return int(typer.main.get_command(app).main(arguments, prog_name="mpm", standalone_mode=False, obj=arguments) or 0)
     except UsageError as error:
@@ -52,9 +60,6 @@ def main(arguments: list[str] | None = None) -> int:
         leave_at_once()
         warn("stopped")
         return 130
-    except BrokenPipeError:  # the reader of our output left, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
     except Exception as error:
         return told(error)
 
@@ -65,10 +70,14 @@ def told(error: Exception) -> int:
     from mpm.sweep.store import Refused
 
     # named without importing what the command did not need
-    ours = [getattr(sys.modules.get(room), name, None) for room, name in (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"))]
+    places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
+    ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))
         return 2
+    if isinstance(error, MemoryError):
+        warn("error: there is not enough memory; a coarser grid.cell, fewer particles a cell or fewer points need less")
+        return 1
     if isinstance(error, BrokenWorkers):
         warn(f"error: {error}")
         return 1

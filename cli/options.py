@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from mpm_cli.talk import warn
 
 BYTES = {"": 1.0} | {f"{letter}{i}": (1024.0 if i else 1000.0) ** (power + 1) for power, letter in enumerate("kMGT") for i in ("", "i")}
 UNITS = {"s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
@@ -101,4 +102,7 @@ def load(config: Path, pairs: list[str] | None, smoke: bool = False) -> Any:
     """The experiment that a command is about."""
     from mpm.config import load as read
 
-    return read(config, overrides(pairs), smoke=smoke)
+    experiment = read(config, overrides(pairs), smoke=smoke)
+    for text in experiment.cautions:
+        warn(f"warning: {text}")
+    return experiment

@@ -6,7 +6,7 @@ import threading
 import time
 from typing import Any, TextIO
 
-from mpm_cli.talk import end
+from mpm_cli.talk import end, shown
 
 from mpm.sweep.report import Reporter
 
@@ -40,7 +40,7 @@ class Plain(Reporter):
         self.compiled = ""  # what was last said to be compiled
 
     def write(self, text: str) -> None:
-        self.stream.write(text + "\n")
+        self.stream.write(shown(text) + "\n")
         self.stream.flush()
 
     def start(self, total: int, done: int, jobs: int) -> None:
@@ -106,8 +106,8 @@ class Bar(Reporter):
         self.say(text)
 
     def say(self, text: str) -> None:
-        """A line above the bar, as it is: no markup is read from it."""
-        self.console.print(text, markup=False)
+        """A line above the bar, as it is: neither markup nor names of emoji are read from it."""
+        self.console.print(shown(text), markup=False, emoji=False)
 
     def close(self) -> None:
         self.progress.stop()

@@ -10,6 +10,8 @@ import threading
 import traceback
 from typing import Any
 
+from mpm.text import visible
+
 
 def strict(value: Any) -> Any:
     """A document that any JSON reader takes: infinities and NaN as text, numpy numbers as numbers, paths as text."""
@@ -25,26 +27,41 @@ def strict(value: Any) -> Any:
 
 
 def document(value: Any) -> None:
-    """The JSON document of a command."""
-    sys.stdout.write(json.dumps(strict(value), indent=1, ensure_ascii=False) + "\n")
+    """The JSON document of a command; letters that stdout does not have as JSON's own escapes."""
+    text = json.dumps(strict(value), indent=1, ensure_ascii=False)
+    try:
+        text.encode(getattr(sys.stdout, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        text = json.dumps(strict(value), indent=1)
+    sys.stdout.write(text + "\n")
+
+
+def shown(text: str) -> str:
+    """Text of ours with what users wrote in it, as a terminal may show it: several lines, and no control characters but tabs before carets."""
+    return visible(text, keep="\n\t")
 
 
 def say(text: str, as_json: bool = False, quiet: bool = False) -> None:
     """A line for people."""
     if not quiet:
-        (sys.stderr if as_json else sys.stdout).write(text + "\n")
+        (sys.stderr if as_json else sys.stdout).write(shown(text) + "\n")
 
 
 def warn(text: str) -> None:
     """A line that is told always, on stderr."""
-    sys.stderr.write(text + "\n")
+    sys.stderr.write(shown(text) + "\n")
 
 
 def internal(error: Exception, what: str) -> None:
     """Our own fault: one line here, the trace (without values) in a file."""
-    with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8") as file:
-        traceback.print_exception(error, file=file)
-    warn(f"{what}: {type(error).__name__}: {error}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
+    said = f"{what}: {type(error).__name__}: {error}"
+    try:
+        with tempfile.NamedTemporaryFile("w", prefix="mpm-error-", suffix=".txt", delete=False, encoding="utf-8", errors="backslashreplace") as file:
+            traceback.print_exception(error, file=file)
+    except OSError as full:
+        warn(f"{said}\nno trace of it could be written ({full.strerror}); please report it with the output of `mpm info`")
+        return
+    warn(f"{said}\nwhere: {file.name}; please report it with that file and the output of `mpm info`")
 
 
 def end(code: int) -> None:

@@ -1,6 +1,7 @@
 """`where` and `derive`: conditions and formulas over parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
 
 Formulas: + - * / **, numbers, names (short names or dotted paths), pi, and the functions below. Conditions: also comparisons, and or not, text.
+Every number is a float, so that no power takes long; text is compared and never reckoned with; what is no number (NaN, complex) is an error.
 """
 
 import ast
@@ -10,12 +11,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 MOST_LETTERS = 1000
+MOST_LEVELS = 100  # of brackets, signs and terms in each other: what is deeper would end in Python's own limit
 COMPARE = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
 BINARY = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
 UNARY = {ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_}
 FUNCTIONS: dict[str, Callable] = {name: getattr(math, name) for name in ("sqrt", "exp", "log", "log10", "sin", "cos", "tan", "atan")}
-FUNCTIONS |= {"floor": lambda x: float(math.floor(x)), "ceil": lambda x: float(math.ceil(x))}  # whole numbers as floats: their powers overflow at once too
-FUNCTIONS |= {"abs": abs, "min": min, "max": max}
+FUNCTIONS |= {"floor": math.floor, "ceil": math.ceil, "abs": abs, "min": min, "max": max}
+ARGUMENTS = {"log": (1, 2), "min": (2, 100), "max": (2, 100)}  # one unless named here
 FORMULA = f"+ - * / **, numbers, pi, {', '.join(FUNCTIONS)} and names of parameters"
 ALLOWED = "comparisons (< <= > >= == !=), and, or, not, + - * / **, numbers, text, functions and names of parameters"
 
@@ -36,6 +38,8 @@ class Formula:
             tree = ast.parse(text.strip(), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
             raise ConditionError(f"this is no {self.what}: {getattr(error, 'msg', None) or error}") from None
+        if levels(tree.body) > MOST_LEVELS:
+            raise ConditionError(f"the {self.what} has more than {MOST_LEVELS} levels of brackets, signs and terms")
         self.names: dict[str, None] = {}
         try:
             self.run = self.build(tree.body)
@@ -48,7 +52,7 @@ class Formula:
 
     def __call__(self, values: Mapping[str, Any]) -> Any:
         value = self.evaluate(values)
-        if not isinstance(value, float | int) or isinstance(value, bool) or math.isnan(value):
+        if not isinstance(value, float):
             raise ConditionError(f"the formula gives no number on this point ({value!r})")
         return value
 
@@ -56,7 +60,9 @@ class Formula:
         """The value on a point."""
         try:
             return self.run(values)
-        except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
+        except OverflowError:
+            raise ConditionError(f"the {self.what} fails on this point: a number is too large") from None
+        except (TypeError, ValueError, ZeroDivisionError) as error:
             raise ConditionError(f"the {self.what} fails on this point: {error}") from None
 
     def build(self, node: ast.AST) -> Callable[[Mapping[str, Any]], Any]:
@@ -75,20 +81,34 @@ class Formula:
             name = dotted(node)
             self.names[name] = None
             return lambda values: values[name]
+        number = self.number
         if isinstance(node, ast.UnaryOp) and type(node.op) in UNARY:
             do, inner = UNARY[type(node.op)], self.build(node.operand)
-            return lambda values: do(inner(values))
+            return lambda values: number(do(number(inner(values))))
         if isinstance(node, ast.BinOp) and type(node.op) in BINARY:
             do, left, right = BINARY[type(node.op)], self.build(node.left), self.build(node.right)
-            return lambda values: do(left(values), right(values))
+            return lambda values: number(do(number(left(values)), number(right(values))))
         raise ConditionError(f"a {self.what} may not hold {ast.unparse(node)[:60]!r}")
 
     def call(self, node: ast.Call) -> Callable[[Mapping[str, Any]], Any]:
         """One of the functions that are known."""
         if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
             raise ConditionError(f"a {self.what} may not hold {ast.unparse(node)[:60]!r}")
-        do, given = FUNCTIONS[node.func.id], [self.build(item) for item in node.args]
-        return lambda values: do(*(one(values) for one in given))
+        least, most = ARGUMENTS.get(node.func.id, (1, 1))
+        if not least <= len(node.args) <= most:
+            wanted = f"{least}" if least == most else f"{least} or more" if most > 2 else f"{least} or {most}"
+            raise ConditionError(f"{node.func.id} takes {wanted} argument{'s' * (wanted != '1')}, found {len(node.args)}")
+        do, given, number = FUNCTIONS[node.func.id], [self.build(item) for item in node.args], self.number
+        return lambda values: number(do(*(number(one(values)) for one in given)))
+
+    @staticmethod
+    def number(value: Any) -> Any:
+        """A value that is reckoned with, as a float."""
+        if not isinstance(value, float | int):
+            raise TypeError(f"{value!r} is no number" if isinstance(value, str) else "it gives no number but a complex one: the root of a negative number")
+        if math.isnan(value):
+            raise ValueError("it gives no number, as inf - inf does")
+        return float(value)
 
 
 class Condition(Formula):
@@ -111,8 +131,24 @@ class Condition(Formula):
             return lambda values: any(part(values) for part in parts) if stop else all(part(values) for part in parts)
         if isinstance(node, ast.Compare) and all(type(op) in COMPARE for op in node.ops):
             terms, does = [self.build(item) for item in (node.left, *node.comparators)], [COMPARE[type(op)] for op in node.ops]
-            return lambda values: all(do(left(values), right(values)) for do, left, right in zip(does, terms, terms[1:], strict=False))
+            return lambda values: all(do(*self.alike(left(values), right(values))) for do, left, right in zip(does, terms, terms[1:], strict=False))
         return super().build(node)
+
+    def alike(self, left: Any, right: Any) -> tuple[Any, Any]:
+        """Two texts, or two numbers: a text and a number never compare."""
+        if isinstance(left, str) and isinstance(right, str):
+            return left, right
+        return self.number(left), self.number(right)
+
+
+def levels(tree: ast.AST) -> int:
+    """How deep a tree is."""
+    deepest, left = 0, [(tree, 1)]
+    while left:
+        node, depth = left.pop()
+        deepest = max(deepest, depth)
+        left += [(child, depth + 1) for child in ast.iter_child_nodes(node) if not isinstance(node, ast.Attribute)]
+    return deepest
 
 
 def dotted(node: ast.AST) -> str:

@@ -22,6 +22,7 @@ from mpm.config.output import Exact, Output
 from mpm.config.quantities import Acceleration
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
+from mpm.text import storable
 
 PHYSICS_VERSION = 2
 NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability")  # cannot change the result of a point
@@ -89,7 +90,14 @@ class Experiment(Model):
     @property
     def name(self) -> str:
         """The file's stem, or `experiment`."""
-        return self._path.stem if self._path else "experiment"
+        return storable(self._path.stem) if self._path else "experiment"
+
+    @property
+    def cautions(self) -> list[str]:
+        """What is valid in the config and seldom meant, with places; empty where nothing is known of its text."""
+        from mpm.config.cautions import cautions
+
+        return cautions(self, self._tree) if self._tree is not None else []
 
     @property
     def moving(self) -> bool:

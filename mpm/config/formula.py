@@ -1,7 +1,6 @@
 """A formula of one variable x, for lines of theory: read by Python's grammar, never evaluated by Python (config/condition.py walks the tree)."""
 
 import ast
-import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -20,7 +19,12 @@ class Formula(Condition):
 
     def __call__(self, x: Any) -> Any:
         with np.errstate(all="ignore"):
-            return self.run({"x": np.asarray(x, dtype=float), "pi": math.pi})
+            return self.run({"x": np.asarray(x, dtype=float)})
+
+    @staticmethod
+    def number(value: Any) -> Any:
+        """Arrays and numbers by numpy's rules: what has no value is NaN or infinite, and leaves a gap in the line."""
+        return np.asarray(value, dtype=float)
 
     def check(self, body: ast.AST) -> None:
         """Only names that mean something, and no comparisons."""
@@ -29,7 +33,7 @@ class Formula(Condition):
                 raise ConditionError(f"a formula may not hold {ast.unparse(node)[:60]!r}" if not isinstance(node, ast.Not) else "a formula may not hold 'not'")
             if isinstance(node, ast.Compare) and any(type(op) in COMPARE for op in node.ops):
                 raise ConditionError("a formula gives a number, it does not compare")
-        unknown = [name for name in self.names if name not in ("x", "pi")]
+        unknown = [name for name in self.names if name != "x"]
         if unknown:
             raise ConditionError(f"a formula knows x and pi, not {unknown[0]!r}")
 
@@ -41,5 +45,5 @@ class Formula(Condition):
             if name not in FUNCTIONS or node.keywords or len(node.args) != count:
                 raise ConditionError(f"a formula may not hold {ast.unparse(node)[:60]!r}")
             do, parts = FUNCTIONS[name], [self.build(item) for item in node.args]
-            return lambda values: do(*(part(values) for part in parts))
+            return lambda values: do(*(self.number(part(values)) for part in parts))
         return super().build(node)

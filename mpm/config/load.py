@@ -13,7 +13,7 @@ from mpm.config.loose import MISSING, Unknown, loose
 from mpm.config.measured import embed
 from mpm.config.merge import extend, put
 from mpm.config.names import GREEK, ROOT, Names, UnknownName
-from mpm.config.nodes import BAD, Node, Origin, read, read_file, wrap
+from mpm.config.nodes import BAD, Node, Origin, lines, read, read_file, wrap
 from mpm.config.problems import ConfigError, Problem, brief, listed
 from mpm.config.rules_stability import findings as map_findings
 from mpm.config.slots import Path
@@ -72,9 +72,8 @@ def gather(source: str | File | dict[str, Any], found: list[Problem]) -> tuple[N
         folder, seen, origin = path.parent, (path.resolve(),) if root is not None else (), Origin(str(source))
     if root is None or not isinstance(root.value, dict):
         if not found:
-            lines = tuple(text.splitlines())
             said = "the file is empty" if root is None or root.value is None else "the config is not a mapping"
-            found.append(Origin(origin.file, lines).problem(1, 1, "", said, allowed=f"the sections {listed(list(Experiment.model_fields))}"))
+            found.append(Origin(origin.file, lines(text)).problem(1, 1, "", said, allowed=f"the sections {listed(list(Experiment.model_fields))}"))
         return None, text, path
     return extend(root, folder, ROOT, found, seen), text, path
 

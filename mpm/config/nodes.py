@@ -5,24 +5,19 @@ aliases, duplicate keys, NaN, integers too long to parse, more than 20 levels, m
 `BAD`, so that the rest is still checked.
 """
 
-import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from mpm.config.problems import Problem, brief, near
+from mpm.config.scalars import scalar
+from mpm.text import escaped, joined
 
 MOST_BYTES = 1 << 20
 MOST_DEPTH = 20
-MOST_DIGITS = 30
 MOST_VALUES = 30_000  # the parser takes 10 to 20 us for each
-INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
-FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-WORDS = {"": None, "~": None, **dict.fromkeys(("null", "Null", "NULL")), **dict.fromkeys(("true", "True", "TRUE"), True),
-         **dict.fromkeys(("false", "False", "FALSE"), False)}  # fmt: skip
-INFINITE = re.compile(r"([-+]?)\.(inf|Inf|INF)")
-NAN = (".nan", ".NaN", ".NAN")
+BREAK = re.compile(r"\r\n|\r|\n")
 
 
 class Bad:
@@ -76,25 +71,6 @@ class Node:
         """Set a key of a mapping."""
         self.value[key] = node
         self.keys[key] = place
-
-
-def scalar(text: str) -> Any:
-    """A plain scalar by the core schema of YAML 1.2: null, true, 12, 0x1F, 1e-4, .inf, or text. ValueError says what a config may not hold."""
-    if text in WORDS:
-        return WORDS[text]
-    if INT.fullmatch(text):
-        if len(text) > MOST_DIGITS:
-            raise ValueError(f"a whole number with {len(text)} digits")
-        return int(text, 0) if text[:2] in ("0o", "0x") else int(text)
-    if FLOAT.fullmatch(text):
-        if math.isinf(number := float(text)):
-            raise ValueError("a number too large for floating point")
-        return number
-    if found := INFINITE.fullmatch(text):
-        return -math.inf if found[1] == "-" else math.inf
-    if text in NAN:
-        raise ValueError("not a number (NaN)")
-    return text
 
 
 class Builder:
@@ -182,6 +158,12 @@ class Builder:
         if kind in ("AliasEvent", "ScalarEvent"):
             value = BAD if bad else event.value
             is_key = bool(self.stack) and isinstance(self.stack[-1].value, dict) and self.pending[-1] is None
+            if not bad and kind == "ScalarEvent":
+                try:
+                    value = joined(event.value)
+                except ValueError as error:
+                    self.report(line, column, f"{error}, which no file can hold as text", allowed="letters")
+                    bad, value = True, BAD
             if not bad and event.style is None and not is_key:
                 try:
                     value = scalar(event.value)
@@ -216,9 +198,13 @@ def read(text: str, origin: Origin) -> tuple[Node | None, list[Problem]]:
     """Nodes of a YAML 1.2 text, and what is wrong with it as YAML; None if it cannot be read at all."""
     from ruamel.yaml import YAML
     from ruamel.yaml.error import MarkedYAMLError, YAMLError
+    from ruamel.yaml.reader import ReaderError
+
+    from mpm.config.tabs import TabScanner
 
     builder = Builder(origin)
     yaml = YAML(typ="safe", pure=True)
+    yaml.Scanner = TabScanner
     try:
         for event in yaml.parse(text):
             if not builder.feed(event):
@@ -228,6 +214,15 @@ def read(text: str, origin: Origin) -> tuple[Node | None, list[Problem]]:
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
         said = " ".join(str(part) for part in (error.context, error.problem) if part)
         builder.report(min(line, max(1, len(origin.lines))), column, f"this is not YAML: {said}")
+        return None, builder.problems
+    except ReaderError as error:
+        before, letter = text[: error.position], text[error.position]
+        line, column = len(BREAK.findall(before)) + 1, len(BREAK.split(before)[-1]) + 1
+        if "\ud800" <= letter <= "\udfff":  # of a command line
+            builder.report(line, column, "this is not UTF-8 text", given=escaped(letter))
+        else:
+            said, wanted = f"this is not YAML: the control character U+{ord(letter):04X}", f'its escape, in double quotes: "{escaped(letter)}"'
+            builder.report(line, column, said, allowed=wanted)
         return None, builder.problems
     except (YAMLError, ValueError, AssertionError, IndexError, KeyError, AttributeError, TypeError) as error:  # ruamel on odd characters and directives
         builder.report(1, 1, f"this is not YAML: {' '.join(str(error).split())[:200]}")
@@ -254,8 +249,13 @@ def read_file(path: Path, shown: str) -> tuple[Node | None, list[Problem], str]:
         before = raw[: error.start].decode("utf-8-sig", "replace")
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
         return None, [origin.problem(line, column, "", "this is not UTF-8 text", given=f"byte 0x{raw[error.start]:02x}")], ""
-    node, problems = read(text, Origin(shown, tuple(text.splitlines())))
+    node, problems = read(text, Origin(shown, lines(text)))
     return node, problems, text
+
+
+def lines(text: str) -> tuple[str, ...]:
+    """The lines of a YAML text, as its parser counts them."""
+    return tuple(BREAK.split(text))
 
 
 def wrap(value: Any, origin: Origin, problems: list[Problem], path: tuple = ()) -> Node:
@@ -269,14 +269,26 @@ def wrap(value: Any, origin: Origin, problems: list[Problem], path: tuple = ()) 
         node = Node({}, origin)
         for key, item in value.items():
             if isinstance(key, str):
-                node.put(key, wrap(item, origin, problems, (*path, key)), (origin, 0, 0))
+                if (name := letters(key, origin, problems, path)) is not BAD:
+                    node.put(name, wrap(item, origin, problems, (*path, name)), (origin, 0, 0))
             else:
                 problems.append(origin.problem(0, 0, ".".join(map(str, path)), "a key must be text", given=brief(key)))
         return node
     if isinstance(value, list | tuple):
         return Node([wrap(item, origin, problems, (*path, index)) for index, item in enumerate(value)], origin)
-    if value is None or isinstance(value, bool | int | float | str):
+    if isinstance(value, str):
+        return Node(letters(value, origin, problems, path), origin)
+    if value is None or isinstance(value, bool | int | float):
         return Node(value, origin)
     said = f"a {type(value).__name__} cannot stand in a config"
     problems.append(origin.problem(0, 0, ".".join(map(str, path)), said, allowed="numbers, text, lists and mappings"))
     return Node(BAD, origin)
+
+
+def letters(text: str, origin: Origin, problems: list[Problem], path: tuple) -> Any:
+    """Text that files can hold; what cannot be is told, and BAD."""
+    try:
+        return joined(text)
+    except ValueError as error:
+        problems.append(origin.problem(0, 0, ".".join(map(str, path)), f"{error}, which no file can hold as text", allowed="letters"))
+        return BAD

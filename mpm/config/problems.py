@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mpm.text import visible
+
 MOST_SHOWN = 50
 MOST_LISTED = 80
 MOST_FINDINGS = 200  # of one kind of check; a file with more is not a config with slips
@@ -35,6 +37,7 @@ class Problem:
             said += f"; allowed: {self.allowed}"
         if self.suggestion:
             said += f"; did you mean {self.suggestion}?"
+        said = visible(said)
         if not self.line or not self.text:
             return said
         start = max(0, self.column - WIDTH * 3 // 4)

@@ -28,6 +28,7 @@ def clock(experiment: Any) -> Iterator[Finding]:
 def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
     path = ("output", "probes", name)
     yield from plain_names(experiment, "output.probes", [name])
+    yield from taken(name)
     wrong = list(vector(experiment, path, point, "a probe"))
     yield from wrong
     for index, (x, length) in enumerate(zip(point, experiment.grid.size, strict=False) if not wrong else ()):
@@ -50,6 +51,28 @@ def probe_home(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
 def spans(shape: Any, dimension: Any) -> str:
     """The box round a shape, in words."""
     return " x ".join(f"{low:.6g} to {high:.6g}" for low, high in zip(*bounds(shape, dimension), strict=True)) + " m"
+
+
+def taken(name: str) -> Iterator[Finding]:
+    """A probe whose series would be called as an observable is."""
+    from mpm.records.variables import VARIABLES, of_probe
+
+    for variable in of_probe(name):
+        if variable in VARIABLES:
+            said = f"the probe's {variable} is the name of an observable ({VARIABLES[variable].long_name})"
+            yield Finding(("output", "probes", name), said, f"another name, as probe_{name}", on_key=True)
+
+
+def apart(experiment: Any) -> Iterator[Finding]:
+    """Every observable has a name of its own in the dataset, where dots become underscores."""
+    from mpm.records.variables import VARIABLES, dataset_name, of_probe
+
+    seen = {variable: f"the probe {probe}" for probe in experiment.output.probes for variable in of_probe(probe) if variable not in VARIABLES}
+    for index, name in enumerate(experiment.output.observables):
+        other = seen.setdefault(dataset_name(name), name)
+        if other != name:
+            said = f"{other} and {name} would both be {dataset_name(name)} in the dataset"
+            yield Finding(("output", "observables", index), said, "a probe of another name", given=name)
 
 
 def probes(experiment: Any) -> Iterator[tuple]:
@@ -81,7 +104,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
-    found = threshold(name)
+    found = threshold(name, experiment.output.probes)
     if found is not None:
         known = experiment.output.probes
         if found.probe not in known:

@@ -162,6 +162,28 @@ def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         )
 
 
+def covered(side: str, dimension: Any) -> set[str]:
+    """The sides that a side's name stands for."""
+    every = {*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension == 3 else set())
+    return every if side == "all" else every - {"bottom", "top"} if side == "lateral" else {side}
+
+
+def surface_twice(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """One exchange of a kind on a side; a fixed temperature is a convection of infinite beta. All exchanges of a material point add up."""
+    dimension = experiment.grid.dimension
+    for kind in EXCHANGES if dimension != 0 else ():
+        alike = ("convection", "fixed") if kind in ("convection", "fixed") else (kind,)
+        for before in range(index + (kind == "fixed")):
+            other = experiment.surfaces[before]
+            if other is MISSING or other.of != item.of or getattr(item, kind) is None:
+                continue
+            same = [name for name in alike if getattr(other, name) is not None and (before < index or name != kind)]
+            both = sorted(covered(item.side, dimension) & covered(other.side, dimension))
+            if same and both:
+                said = f"{item.of!r} has a {same[0]} there already, from surfaces.{before} (side {other.side})"
+                yield Finding(("surfaces", index, kind), said, f"one a side: join the two, or give each its own ({', '.join(both)})", on_key=True)
+
+
 def surface_names(experiment: Any) -> Iterator[Finding]:
     seen: dict[str, int] = {}
     for index, item in enumerate(experiment.surfaces):

@@ -3,6 +3,7 @@
 convert("190 degC", "K", "temperature")                          463.15
 convert("1.5 degC", "K", "temperature difference", difference=True)   1.5
 convert("2 mm", "m", "length")                                   0.002
+convert("50 W m-2 K-1", "W/m**2/K", "heat-transfer coefficient")      50.0, as "50 W/m2/K", "50 W/m**2/K" or "50 W/(m²·K)"
 
 Numbers and exponents are read here and only the bare unit reaches pint, so that no text can make it compute.
 """
@@ -13,7 +14,9 @@ import re
 from typing import Any
 
 TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
-UNIT = re.compile(r"(?:[^\W\d]|[°%Ωµμ*/^ ·().²³⁻¹]|(?:\*\*|\^)\s*-?\s*\d{1,2}(?!\d)|^1(?=/)){1,60}")
+UNIT = re.compile(r"(?:[^\W\d]|[°%Ωµμ*/^ ·().⁻⁰¹²³⁴⁵⁶⁷⁸⁹]|(?:\*\*|\^)\s*-?\s*\d{1,2}(?!\d)|^1(?=/)){1,60}")
+PLAIN_POWER = re.compile(r"(?<=[^\W\d_])(-?\d{1,2})(?!\w)")  # m2, s-1: as datasets and UDUNITS write powers
+ALIKE = str.maketrans({"−": "-", "⋅": "·", "∙": "·", "\xa0": " ", "\u202f": " "})
 KNOWN = ("m cm mm um km K degC degF s ms min h day kg g m/s mm/s Pa kPa MPa GPa bar J kJ W kW N W/m/K W/m**2/K J/kg/K kJ/kg/K kg/m**3 g/cm**3 "
          "J/kg Pa*s mPa*s 1/K Pa/K rad deg rad/s rpm m/s**2 %").split()  # fmt: skip
 OFFSET = {"degree_Celsius": "delta_degree_Celsius", "degree_Fahrenheit": "delta_degree_Fahrenheit"}
@@ -51,26 +54,31 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
     found = TEXT.fullmatch(text)
     if not found:
         raise UnitError(f"{text!r} is not {article(name)} {name}: it does not begin with a number")
-    number, given = float(found[1]), found[2]
+    number, given = float(found[1]), found[2].translate(ALIKE)
+    slip = f'"{found[1]} {unit}"' if len(unit) > 2 and given != unit and re.sub(r"\W", "", given) == re.sub(r"\W", "", unit) else ""  # W/mK for W/m/K
     if not given:
         raise UnitError(f"{text!r} is text without a unit, not {article(name)} {name}", suggestion=found[1])
+    given = "dimensionless" if given == "1" else PLAIN_POWER.sub(r"**\1", given)
     if not UNIT.fullmatch(given):
-        raise UnitError(f"{given!r} is not a unit")
+        raise UnitError(f"{found[2]!r} is not a unit", suggestion=slip)
     if re.search(r"(\^|\*\*)[^*^]*\d\s*(\^|\*\*)", given):
-        raise UnitError(f"{given!r} is not a unit: powers of powers")
+        raise UnitError(f"{found[2]!r} is not a unit: powers of powers")
     units = registry()
     try:
         source = units.parse_units("1" + given if given[0] == "/" else given)
     except Exception:  # pint lets through whatever its tokenizer and evaluator raise on broken text
         near = difflib.get_close_matches(given, KNOWN, 1, 0.6)
-        raise UnitError(f"unknown unit {given!r}", suggestion=f'"{found[1]} {near[0]}"' if near else "") from None
+        raise UnitError(f"unknown unit {found[2]!r}", suggestion=slip or (f'"{found[1]} {near[0]}"' if near else "")) from None
     if difference and str(source) in OFFSET:
         source = units.parse_units(OFFSET[str(source)])
     target = units.parse_units(unit or "dimensionless")
     if source.dimensionality != target.dimensionality:
         said = NAMES.get(str(source.dimensionality), "")
         said = f"is {article(said)} {said}" if said else f"has the dimension {source.dimensionality}"
-        scale = f'"{found[1]} deg{given}"' if given in ("C", "F") and unit == "K" else ""
+        scale = f'"{found[1]} deg{given}"' if given in ("C", "F") and unit == "K" else slip
         raise UnitError(f"{text!r} {said}, but {article(name)} {name} is expected", suggestion=scale)
+    if unit == "K" and not difference and "delta_" in str(source):
+        said = f"{text!r} is a temperature difference, but {article(name)} {name} is expected"
+        raise UnitError(said, suggestion=f'"{found[1]} deg{"F" if "Fahrenheit" in str(source) else "C"}"')
     # 36 * 0.001 is not 0.036: rounding makes "36 mm" and 0.036 the same run
     return float(f"{units.Quantity(number, source).to(target).magnitude:.15g}")

@@ -1,7 +1,8 @@
 """Variation: what a sweep section comes to: groups of parameters, formulas and a condition. `vary` makes it."""
 
+import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -81,7 +82,29 @@ def label(value: Any) -> str:
         return ", ".join(entry(key, inner) for key, inner in value.items() if inner is not None) or "none"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(label, value)) + "]"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return exactly(value) if isinstance(value, float) else str(value)
+
+
+def exactly(value: float) -> str:
+    """A number with as many digits as it takes: no other has the same text."""
+    short = f"{value:g}"
+    return short if float(short) == value else repr(value)
+
+
+def digits(values: Iterable[float], least: int = 6) -> int:
+    """How many significant digits it takes to tell numbers apart; 17 where all are needed."""
+    numbers = sorted({value for value in values if math.isfinite(value)})
+    wanted = least
+    for low, high in itertools.pairwise(numbers):
+        size = max(abs(low), abs(high))
+        if high - low < size * 10.0 ** (1 - wanted):
+            wanted = max(wanted, math.floor(math.log10(size)) + 1 + math.ceil(-math.log10(high - low)))
+    return min(wanted, 17)
+
+
+def rounded(value: float, places: int) -> str:
+    """A number in so many significant digits; past 15, which no longer shorten it, as Python writes it."""
+    return f"{value:.{places}g}" if places <= 15 else repr(value)
 
 
 def entry(key: Any, inner: Any) -> str:

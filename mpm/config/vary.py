@@ -189,15 +189,17 @@ class Vary:
 
     def shorten(self, variation: Variation) -> None:
         """Names for the dataset: the last word of the path, and more of it where that is taken."""
-        from mpm.records.variables import VARIABLES
+        from mpm.records.variables import VARIABLES, dataset_name, of_probe
 
+        output = self.names.experiment.output
+        results = {variable for probe in output.probes for variable in of_probe(probe)} | {dataset_name(name) for name in output.observables}
         parameters = list(variation.parameters())
         for parameter in parameters:
             words = parameter.spoken.replace("-", "_").split(".")
             for length in range(1, len(words) + 1):
                 short = "_".join(words[-length:])
                 others = ["_".join(other.spoken.split(".")[-length:]) for other in parameters if other is not parameter]
-                if short.isidentifier() and short not in RESERVED and short not in VARIABLES and short not in others:
+                if short.isidentifier() and short not in RESERVED and short not in VARIABLES and short not in results and short not in others:
                     break
             parameter.short = short
 

@@ -7,6 +7,7 @@ import contextlib
 import math
 import os
 import secrets
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,16 +17,19 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from mpm.plots.words import number
+from mpm.text import visible
 
 WIDTH, DPI = 1600 / 150, 150
 INK, QUIET, FAINT = "#222222", "#6b6b6b", "#d9d9d9"
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe and Ito (2008)
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)), (0, (3, 1, 1, 1, 1, 1)))
 SMALL, HEADING = 9, "heading"
+LONGEST = 110  # letters of a title that fit
 MARKS = ("x", "+", "1", "2", "3", "4")
 STYLE = {
     "font.size": 10,
@@ -47,6 +51,7 @@ STYLE = {
     "xtick.labelcolor": INK,
     "ytick.labelcolor": INK,
     "text.color": INK,
+    "text.parse_math": False,  # a title with dollars is a title
     "lines.linewidth": 1.8,
     "lines.markersize": 5,
     "legend.frameon": False,
@@ -74,7 +79,7 @@ def figure(title: str, height: float) -> Figure:
     """An empty figure with its title."""
     fig = Figure(figsize=(WIDTH, height), layout="constrained")
     fig.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.04, hspace=0.06)
-    fig.suptitle(title, x=0.012, ha="left")
+    fig.suptitle(title if len(title) <= LONGEST else title[: LONGEST - 1] + "…", x=0.012, ha="left")
     return fig
 
 
@@ -144,11 +149,14 @@ def heading(text: str) -> Any:
 
 
 def save(fig: Figure, path: Path | str) -> Path:
-    """Write PNG, SVG or PDF, by the suffix: beside the target first, then renamed over it."""
+    """Write PNG, SVG or PDF, by the suffix: beside the target first, then renamed over it. A letter that no font here has is a box."""
     path = Path(path)
     temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
     try:
-        with styled():
+        with styled(), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Glyph .* missing from")
+            for text in fig.findobj(Text):  # users' words are in titles, legends and labels: an SVG with control characters is none
+                text.set_text(visible(text.get_text(), keep="\n"))
             fig.savefig(temporary, metadata={"Date": None} if path.suffix.lower() == ".svg" else None)
         os.replace(temporary, path)
     finally:

@@ -10,9 +10,11 @@ import numpy as np
 from mpm.plots import words
 from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
 from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, dataset_name, describe, threshold
+from mpm.text import visible
 from mpm.warned import counted
 
 BOOKKEEPING = ("status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "wall_time", "attempts")
+FEW = 64  # values that are told apart by their digits
 LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
 
 
@@ -62,9 +64,14 @@ class Axis:
         """Place of each value in ascending order."""
         return np.argsort(np.argsort(self.positions, kind="stable"), kind="stable")
 
+    @cached_property
+    def texts(self) -> list[str]:
+        """Every value in words, those that differ in different ones; on long axes in three digits."""
+        return words.numbers(self.values) if self.size <= FEW else [words.number(value) for value in self.values]
+
     def text(self, index: int) -> str:
         """A value in words."""
-        return words.number(self.values[index])
+        return self.texts[index]
 
     def says(self, index: int) -> str:
         """`κ = 0.35 W/m/K`."""
@@ -133,7 +140,7 @@ class View:
     @property
     def title(self) -> str:
         """The dataset's title, and whether it is a smoke run."""
-        title = self.root.attrs.get("title") or self.root.attrs.get("name") or "mpm"
+        title = visible(str(self.root.attrs.get("title") or self.root.attrs.get("name") or "mpm"))
         return f"{title} (smoke run: coarse and short)" if str(self.root.attrs.get("smoke", "")).lower() in ("true", "1") else title
 
     @cached_property
@@ -234,7 +241,8 @@ class View:
 
     def thresholds(self, probe: str) -> list[tuple[str, float]]:
         """Finals `time_to_<probe>_...` of a probe's series, each with its temperature in degrees Celsius."""
-        found = [(str(name), threshold(str(name))) for name in self.root.data_vars]
+        probes = (self.config.get("output") or {}).get("probes") or {}
+        found = [(str(name), threshold(str(name), probes)) for name in self.root.data_vars]
         return [(name, row.kelvin - words.KELVIN) for name, row in found if row is not None and f"temperature_{row.probe}" == probe]
 
     def measured(self, name: str) -> tuple[np.ndarray, np.ndarray, str] | None:

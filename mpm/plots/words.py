@@ -2,11 +2,13 @@
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from mpm.text import visible
 
 KELVIN = 273.15
 SYMBOLS = {"kappa": "κ", "beta": "β", "alpha": "α", "eta": "η", "p0": "p₀", "nu": "ν", "mu": "μ", "lam": "λ"}
@@ -62,9 +64,10 @@ def is_temperature_path(path: str) -> bool:
     return path.rsplit(".", 1)[-1] in _TEMPERATURES
 
 
-def number(value: Any) -> str:
-    """Three significant digits, without an exponent where that reads well; text as it is, shortened."""
+def number(value: Any, digits: int = 3) -> str:
+    """Some significant digits, without an exponent where that reads well; text as it is, shortened."""
     if isinstance(value, str):
+        value = visible(value)
         return value if len(value) <= 28 else value[:27] + "…"
     value = float(value)
     if math.isnan(value):
@@ -75,14 +78,24 @@ def number(value: Any) -> str:
         return "0"
     magnitude = math.floor(math.log10(abs(value)))
     if -3 <= magnitude < 6:
-        digits = max(0, 2 - magnitude)
-        text = f"{round(value, 2 - magnitude):.{digits}f}"
+        places = digits - 1 - magnitude
+        text = f"{round(value, places):.{max(0, places)}f}"
         text = text.rstrip("0").rstrip(".") if "." in text else text
     else:
-        mantissa, exponent = f"{value:.2e}".split("e")
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         mantissa = mantissa.rstrip("0").rstrip(".")
         text = ("" if mantissa == "1" else f"{mantissa}·") + "10" + str(int(exponent)).translate(_RAISED)
     return text.replace("-", "−")
+
+
+def numbers(values: Iterable[Any]) -> list[str]:
+    """Each value in words, in as many digits as tell apart those that differ; long texts by their number where their beginnings are the same."""
+    values = list(values)
+    for digits in (3, 4, 5, 6, 8, 10, 12, 15, 17):
+        texts = [number(value, digits) for value in values]
+        if len(set(texts)) == len(set(values)):
+            return texts
+    return [f"{text} ({place + 1})" if texts.count(text) > 1 else text for place, text in enumerate(texts)]
 
 
 def symbol(name: str) -> str:
@@ -118,7 +131,7 @@ def wrapped(text: str, width: int) -> str:
 
 def reason(status: str, error: str) -> str:
     """Why a point has no number, without what differs from point to point: `diverged: det F <= 0`."""
-    text = re.split(r"\s+at particle|\s+at node|,? at t\s*=|, t\s*=|, step \d|\n", error.strip())[0].strip(" ,;")
+    text = visible(re.split(r"\s+at particle|\s+at node|,? at t\s*=|, t\s*=|, step \d|\n", error.strip())[0].strip(" ,;"))
     text = text.replace("<=", "≤").replace(">=", "≥")
     if not text:
         return status

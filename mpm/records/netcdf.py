@@ -21,6 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from mpm.text import storable
+
 PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
 CHUNK = 2**20  # bytes that a chunk holds at least, where there are as many
 WHOLE = {"x", "y", "z", "r", "direction", "time"}  # dimensions that are never cut: a chunk holds whole frames and whole series
@@ -61,10 +63,12 @@ class Group:
 
 
 def attribute(value: Any) -> Any:
-    """What NetCDF can hold as an attribute: a string, a number, an array of numbers; anything else as JSON."""
-    if isinstance(value, str | np.ndarray | np.generic) or (isinstance(value, int | float) and not isinstance(value, bool)):
+    """What NetCDF can hold as an attribute: a string without NUL, a number, an array of numbers; anything else as JSON."""
+    if isinstance(value, str):
+        return storable(value)
+    if isinstance(value, np.ndarray | np.generic) or (isinstance(value, int | float) and not isinstance(value, bool)):
         return value
-    return json.dumps(value, ensure_ascii=False)
+    return storable(json.dumps(value, ensure_ascii=False))
 
 
 def to_bytes(groups: dict[str, Group], attrs: dict[str, Any]) -> bytes:
@@ -114,7 +118,8 @@ def put(group: Any, name: str, variable: Array, lengths: dict[str, int]) -> None
     if data.dtype.kind in "OU":
         import h5py
 
-        target = group.create_variable(name, variable.dims, dtype=h5py.string_dtype(), data=data.astype(object), **how)
+        text = np.array([storable(str(value)) for value in data.ravel()], dtype=object).reshape(data.shape)
+        target = group.create_variable(name, variable.dims, dtype=h5py.string_dtype(), data=text, **how)
     else:
         target = group.create_variable(name, variable.dims, data=data, **(how | PACKED if how else {}))
     for key, value in variable.attrs.items():
@@ -123,7 +128,7 @@ def put(group: Any, name: str, variable: Array, lengths: dict[str, int]) -> None
 
 def seal(body: bytes, line: dict) -> bytes:
     """`body`, one line of JSON, and the digest of both."""
-    text = json.dumps(line, ensure_ascii=False).encode()
+    text = json.dumps(line, ensure_ascii=False).encode(errors="backslashreplace")  # halves of pairs, which JSON writes so too
     return b"".join([body, text, closing(text, body, text)])
 
 

@@ -69,6 +69,8 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
     error = "" if status == OK else f"{STATUS[status]}: {outcome.message or outcome.kind.replace('_', ' ')}"
     for name in (*run.series, *run.finals):
         describe(name)  # a name that the table does not know would have neither units nor a long name
+    if wrong := [name for name, values in run.series.items() if len(values) != len(run.times)]:
+        raise ValueError(f"series that are not one value a time, as when two have one name: {', '.join(wrong)}")
     sizes = [len(next(iter(rows.values()), ())) for rows in run.particles]
     fields = run.particles[0] if run.particles else {}
     return Record(

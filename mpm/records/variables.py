@@ -12,6 +12,7 @@ Imports nothing of the package and nothing heavy. To add a quantity: one line in
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
@@ -141,7 +142,8 @@ FIELDS_GRID = ("temperature", "velocity", "density")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 
-_THRESHOLD = re.compile(r"time_to[._](?P<probe>[A-Za-z]\w*?)[._](?P<value>-?\d+(?:[._]\d+)?)_(?P<unit>degC|K)")
+_THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")
+_IN_DATASET = r"time_to_(?P<probe>{})_(?P<value>-?\d+(?:_\d+)?)_(?P<unit>degC|K)"
 _AT_PROBE = ("temperature", "velocity")
 
 
@@ -153,9 +155,12 @@ def dataset_name(observable: str) -> str:
 VARIABLES = {dataset_name(row[0]): Variable(dataset_name(row[0]), *row[1:]) for row in TABLE}
 
 
-def threshold(name: str) -> Threshold | None:
-    """Take `time_to.centre.95_degC` (or its dataset name) apart; None for any other name."""
+def threshold(name: str, probes: Iterable[str] = ()) -> Threshold | None:
+    """Take `time_to.centre.95_degC` (or its dataset name) apart; None for any other name. In a dataset's name only `probes` tell tc_1 at 5 from tc at 1.5."""
     match = _THRESHOLD.fullmatch(name)
+    for probe in () if match else (*probes, r"[A-Za-z_]\w*?"):
+        if match := re.fullmatch(_IN_DATASET.format(probe), name):
+            break
     if match is None:
         return None
     value, unit = float(match["value"].replace("_", ".")), match["unit"]
@@ -177,14 +182,22 @@ def turn(dimension: int | str | None) -> float:
     return 2 * math.pi if dimension == "axisymmetric" else 1.0
 
 
-def describe(name: str, dimension: int | str | None = None) -> Variable:
-    """The variable of a dataset name; KeyError with the name if there is none. In scenes of dimension 0, 1 and 2 totals are of a part of the body."""
+def of_probe(probe: str) -> tuple[str, ...]:
+    """The names that a dataset may hold for a probe, but for times to a temperature."""
+    return f"temperature_{probe}", f"misfit_{probe}", f"measured_temperature_{probe}", f"measured_time_{probe}"
+
+
+def describe(name: str, dimension: int | str | None = None, probes: Iterable[str] = ()) -> Variable:
+    """The variable of a dataset name; KeyError with the name if there is none. In scenes of dimension 0, 1 and 2 totals are of a part of the body.
+
+    `probes` as in `threshold`.
+    """
     if is_total(name) and dimension in PER:
         (units, of), whole = PER[dimension], VARIABLES[name]
         return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {of}")
     if name in VARIABLES:
         return VARIABLES[name]
-    if found := threshold(name):
+    if found := threshold(name, probes):
         unit = "°C" if found.unit == "degC" else "K"
         return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
     field, _, probe = name.partition("_")

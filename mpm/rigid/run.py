@@ -231,6 +231,8 @@ def beyond(system: System, trace: Trace) -> float:
 def _gather(parts, run_bodies, snapshots, times, names, thresholds, reference, start) -> RigidRun:
     shown = min(len(trace.heat) for _, _, trace, _ in parts)
     series = {name: np.full(shown, np.nan) for name in (f"temperature.{n}" for n in names)}
+    if taken := {"temperature.mean", "temperature.min", "temperature.max"}.intersection(series):
+        raise ValueError(f"a probe has the name of a result: {', '.join(taken)}")
     series |= {name: np.zeros(shown) for name in ("temperature.mean", "heat", "heat_exchanged", "heat_ledger")}
     least, most, capacity, crossings = [], [], 0.0, {}
     for system, steps, trace, mine in parts:

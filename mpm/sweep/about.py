@@ -13,7 +13,7 @@ MARK = b',\n "sha256": "'
 
 def write_about(path: Path, about: dict[str, Any]) -> None:
     """Write it, whole."""
-    head = json.dumps(about, indent=1, ensure_ascii=False).encode().removesuffix(b"\n}")
+    head = json.dumps(about, indent=1, ensure_ascii=False).encode(errors="backslashreplace").removesuffix(b"\n}")
     write_whole(path, head + closing(head))
 
 

@@ -4,6 +4,7 @@ The product is counted as an integer before anything is built. A point is the re
 Cost of 10 000 points, measured on a busy two-core machine: 1.0 s (kappa x beta of the loaf), 2.6 s (five knobs of the slump).
 """
 
+import json
 import math
 from array import array
 from collections.abc import Iterator
@@ -20,11 +21,12 @@ from mpm.config.names import ROOT, Names
 from mpm.config.nodes import Node, Origin, wrap
 from mpm.config.problems import ConfigError
 from mpm.config.slots import Path
-from mpm.config.variation import Group, Parameter, Variation, at_path, label
+from mpm.config.variation import Group, Parameter, Variation, at_path, digits, label, rounded
 from mpm.config.vary import Vary
 from mpm.sweep.listed import Alone, Case, Cases, Coordinate, Dimension, Listed
 from mpm.sweep.ranges import columns, replaced
 
+MOST_RUNS = 10_000_000  # whatever --max-runs says: planning as many takes ten minutes, and their ids 240 MB
 MOST_TOLD = 10  # wrong points told one by one
 
 
@@ -37,10 +39,11 @@ def plan(experiment: Experiment, max_runs: int = 10_000) -> Cases:
     vary = Vary(experiment.sweep, names)
     variation = vary.read()
     stop(root, vary.found)
-    if variation.size > max_runs:
+    if variation.size > min(max_runs, MOST_RUNS):
         sizes = " x ".join(str(group.size) for group in variation.groups)
-        said = f"the sweep has {sizes + ' = ' if len(variation.groups) > 1 else ''}{variation.size} points, and the limit is {max_runs}"
-        stop(root, [Finding(("sweep",), said, f"fewer points, or --max-runs {variation.size}", on_key=True)])
+        said = f"the sweep has {sizes + ' = ' if len(variation.groups) > 1 else ''}{variation.size} points, and the limit is {min(max_runs, MOST_RUNS)}"
+        more = f", or --max-runs {variation.size}" if variation.size <= MOST_RUNS else ""
+        stop(root, [Finding(("sweep",), said, f"fewer points{more}", on_key=True)])
     return Points(experiment, variation, root).build()
 
 
@@ -66,6 +69,7 @@ class Points:
         self.columns = {id(parameter): column for group in variation.groups for parameter, column in zip(group.parameters, columns(group), strict=True)}
         self.base = experiment.resolved()
         self.found: list[Finding] = []
+        self.known_places: dict[int, int] = {}
 
     def build(self) -> Cases:
         """Check every point, drop those that the condition drops."""
@@ -118,12 +122,22 @@ class Points:
         found = {}
         for name, path in names.items():
             value = varied[path] if path in varied else at_path(self.base, path)
-            found[name] = value if isinstance(value, float | int) else float("inf") if value == ".inf" else label(value)
+            found[name] = float(value) if isinstance(value, float | int) else math.inf if value == ".inf" else label(value)
         return found
 
     def values(self, flat: int) -> dict[str, Any]:
         """See `Case`."""
         return {parameter.spoken: value for parameter, value in self.varied(flat)}
+
+    def words(self, flat: int) -> dict[str, str]:
+        """See `Case`."""
+        return {parameter.short: rounded(v, self.places(parameter)) if isinstance(v, float) else label(v) for parameter, v in self.varied(flat)}
+
+    def places(self, parameter: Parameter) -> int:
+        """How many digits tell the values of a parameter apart."""
+        if id(parameter) not in self.known_places:
+            self.known_places[id(parameter)] = digits(value for value in self.columns[id(parameter)] if isinstance(value, float))
+        return self.known_places[id(parameter)]
 
     def experiment(self, flat: int) -> Experiment:
         """See `Case`."""
@@ -205,9 +219,15 @@ class Points:
         raw = [float("inf") if value == ".inf" else value for value in self.columns[id(parameter)]]
         numbers = all(isinstance(value, float | int) and not isinstance(value, bool) for value in raw)
         quantity = parameter.slot.quantity
-        values = np.array(raw, dtype=float) if numbers else np.array([label(value) for value in raw], dtype=object)
+        values = np.array(raw, dtype=float) if numbers else np.array(labels(raw), dtype=object)
         units = quantity.units if quantity and numbers else "1" if numbers else ""
         return Coordinate(parameter.short, values, units, parameter.slot.description or parameter.short, parameter.spoken)
+
+
+def labels(values: list[Any]) -> list[str]:
+    """A label a value; JSON where two of different values would be the same."""
+    short, whole = [label(value) for value in values], [json.dumps(value, sort_keys=True, ensure_ascii=False) for value in values]
+    return short if len(set(short)) == len(set(whole)) else whole
 
 
 def said(values: dict[str, Any]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm.sweep.store import Refused, differences
+from mpm.text import visible
 
 NOT_RESULTS = ("wall_time", "attempts")
 NOT_ATTRIBUTES = ("config", "started", "finished", "facts", "machine", "threads", "versions", "git_revision", "source_hash", "_NCProperties")
@@ -64,7 +65,7 @@ def attribute(key: str, x: Any, y: Any) -> list[str]:
             told = differences(json.loads(x), json.loads(y), set())
             more = [f"config: {len(told) - MOST_TOLD} more paths"] if len(told) > MOST_TOLD else []
             return [f"config: {line}" for line in told[:MOST_TOLD]] + more
-    return [f"attribute {key}: {clip(x)} and {clip(y)}"]
+    return [f"attribute {key}: {both(x, y)}"]
 
 
 def group(path: str, a: Any, b: Any, rtol: float, atol: float) -> list[str]:
@@ -93,7 +94,7 @@ def values(x: np.ndarray, y: np.ndarray, rtol: float, atol: float) -> str:
         if not different.any():
             return ""
         at = tuple(np.argwhere(different)[0])
-        return f"{different.sum()} of {x.size} differ, first {clip(x[at])} and {clip(y[at])}"
+        return f"{different.sum()} of {x.size} differ, first {both(x[at], y[at])}"
     same = np.isclose(x.astype(float), y.astype(float), rtol=rtol, atol=atol, equal_nan=True)
     if same.all():
         return ""
@@ -107,7 +108,10 @@ def equal(x: Any, y: Any) -> bool:
     return json.dumps(x, default=str) == json.dumps(y, default=str)
 
 
-def clip(value: Any) -> str:
-    """A value, short."""
-    text = str(value).replace("\n", " ")
-    return text if len(text) < 60 else text[:57] + "..."
+def both(x: Any, y: Any) -> str:
+    """Two values, short: long texts from where they begin to differ."""
+    texts = [visible(str(value)) for value in (x, y)]
+    same = next((place for place, (a, b) in enumerate(zip(*texts, strict=False)) if a != b), min(map(len, texts)))
+    start = max(0, same - 20) if max(map(len, texts)) >= 60 else 0
+    cut = [("..." if start else "") + text[start : start + 57] + ("..." if len(text) > start + 57 else "") for text in texts]
+    return " and ".join(cut)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mpm.config.experiment import Experiment
+from mpm.config.variation import label
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,11 @@ class Case:
         return self.maker.values(self.flat)
 
     @property
+    def words(self) -> dict[str, str]:
+        """The same for people: short names, and values that no other point of the dimension has in the same letters."""
+        return self.maker.words(self.flat)
+
+    @property
     def experiment(self) -> Experiment:
         """The config of the point: some 0.1 ms."""
         return self.maker.experiment(self.flat)
@@ -68,6 +74,10 @@ class Alone:
     def values(self, flat: int) -> dict[str, Any]:
         """What is set."""
         return self.told
+
+    def words(self, flat: int) -> dict[str, str]:
+        """What is set, for people."""
+        return {path.rsplit(".", 1)[-1]: label(value) for path, value in self.told.items()}
 
     def experiment(self, flat: int) -> Experiment:
         """The experiment itself."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm import compiling
+from mpm.config.variation import digits, rounded
 from mpm.sweep import engine
 from mpm.sweep.api import default_out, skipped
 from mpm.sweep.room import size
@@ -97,7 +98,7 @@ def said(found: dict[str, Any]) -> str:
     told[-1] += f", {found['present']} already in {found['out']}, {found['due']} to run"
     for dim in found["dimensions"]:
         for row in dim["coordinates"]:
-            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {short(row['first'])} ... {short(row['last'])} {row['units']}".rstrip())
+            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {ends(row['first'], row['last'])} {row['units']}".rstrip())
     cost = found["estimate"]
     if physics := cost.get("physics"):
         told.append(f"compiled  {', '.join(physics['compiled']) or 'nothing'}")
@@ -132,8 +133,14 @@ def said_groups(groups: list[dict[str, Any]]) -> list[str]:
     return lines
 
 
+def ends(first: Any, last: Any) -> str:
+    """The ends of an axis, in as many digits as tell them apart."""
+    places = digits([value for value in (first, last) if isinstance(value, float)])
+    return " ... ".join(rounded(value, places) if isinstance(value, float) else str(value) for value in (first, last))
+
+
 def short(value: Any) -> str:
-    """A value of an axis."""
+    """A number of an estimate."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -27,4 +27,4 @@ class Reporter:
 
 def label(case: Any) -> str:
     """A point's swept values, short: `kappa=0.35 beta=13.1`."""
-    return " ".join(f"{path.rsplit('.', 1)[-1]}={f'{value:.6g}' if isinstance(value, float) else value}" for path, value in case.values.items())
+    return " ".join(f"{name}={value}" for name, value in case.words.items())

@@ -17,7 +17,7 @@ from mpm.config.names import Names
 from mpm.config.nodes import Origin, wrap
 from mpm.config.problems import ConfigError
 from mpm.config.vary import RESERVED, label
-from mpm.records.variables import VARIABLES
+from mpm.records.variables import VARIABLES, of_probe
 from mpm.sweep.cases import stop
 from mpm.sweep.listed import Alone, Case, Cases, Coordinate, Dimension
 
@@ -80,7 +80,8 @@ def coordinates(rows: list, cases: list[Case]) -> list[Coordinate]:
         numbers = all(isinstance(value, float | int) and not isinstance(value, bool) for value in column)
         values = np.array(column, dtype=float) if numbers else np.array([value if isinstance(value, str) else label(value) for value in column], dtype=object)
         units = slot.quantity.units if numbers and slot is not None and slot.quantity else "1"
-        found.append(Coordinate(short(spoken, [other for other in names if other != name]), values, units, slot.description if slot else spoken, spoken))
+        taken = {variable for probe in cases[0].experiment.output.probes for variable in of_probe(probe)}
+        found.append(Coordinate(short(spoken, [other for other in names if other != name], taken), values, units, slot.description if slot else spoken, spoken))
     return found
 
 
@@ -98,10 +99,10 @@ def standing(experiment: Experiment, name: str) -> tuple[Any, Any, str]:
     return ("none" if value is None else value), slot, names.spoken.get(path) or ".".join(map(str, path))
 
 
-def short(spoken: str, others: list[str]) -> str:
+def short(spoken: str, others: list[str], results: set[str]) -> str:
     """A name for the dataset: the last word of the path, and more of it where that is taken."""
     words = spoken.split(".")
-    taken = {other.rsplit(".", 1)[-1] for other in others}
+    taken = {other.rsplit(".", 1)[-1] for other in others} | results
     for length in range(1, len(words) + 1):
         name = "_".join(words[-length:])
         if name.isidentifier() and name not in VARIABLES and name not in taken and name not in {*OWN, "setting", *RESERVED}:

@@ -27,9 +27,9 @@ def dimension_of(plan: Any) -> int | str | None:
     return plan.cases[0].experiment.grid.dimension if plan.cases and not swept else None
 
 
-def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, **more: Any) -> Array:
-    """An array with the units and the long name of the table, for scenes of one dimension."""
-    found = describe(name, dimension)
+def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, probes: Any = (), **more: Any) -> Array:
+    """An array with the units and the long name of the table, for scenes of one dimension; `probes` as in `records.variables.threshold`."""
+    found = describe(name, dimension, probes)
     return Array(dims, data, {"units": found.units, "long_name": found.long_name, **more})
 
 
@@ -127,8 +127,13 @@ class Table:
         columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "warnings", "run_id")} | {"warning_flags": self.flags}
         columns |= self.numbers | {"attempts": self.attempts}
         columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
-        group = Group({name: described(name, self.dims, self.full(values), self.dimension, **meanings.get(name, {})) for name, values in columns.items()})
-        return with_axes(group, planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names)))
+        probes = self.plan.cases[0].experiment.output.probes if self.plan.cases else ()
+        said = lambda name, values: described(name, self.dims, self.full(values), self.dimension, probes, **meanings.get(name, {}))  # noqa: E731
+        group = Group({name: said(name, values) for name, values in columns.items()})
+        coordinates = planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names))
+        if twice := sorted(set(coordinates) & set(columns)):
+            raise ValueError(f"a parameter and a result are both called {', '.join(twice)}")
+        return with_axes(group, coordinates)
 
     def series(self, shards: list[str] | None = None) -> Group:
         """Observables over time; or which file holds those of each value along the first dimension."""

@@ -120,7 +120,7 @@ def test_what_is_no_plain_file_of_some_size_is_refused_and_not_waited_for(tmp_pa
     with (tmp_path / "large.csv").open("wb") as file:
         file.truncate(65 * 2**20)
     for name, words in (("pipe.csv", "no plain file"), ("/dev/zero", "no plain file"), ("folder.csv", "no plain file|Is a directory"), ("large.csv", "65 MiB"),
-                        ("no\\0name", "cannot read")):  # fmt: skip
+                        ("no\\0name", "a NUL character")):  # fmt: skip
         with pytest.raises(mpm.ConfigError, match=words) as caught:
             curve(tmp_path, HEAD + "1,20\n", BASE.replace("file: curve.csv", f'file: "{name}"'))
         assert "scene.yaml:7:" in str(caught.value)

@@ -1,5 +1,7 @@
 """Text with units to SI."""
 
+import json
+import re
 import subprocess
 import sys
 
@@ -31,6 +33,15 @@ from mpm.config.units import UnitError, convert
         ("2e-4 /K", "1/K", True, 2e-4),
         ("1 kPa*s", "Pa*s", False, 1000.0),
         ("5 µm", "m", False, 5e-6),
+        ("50 W/m2/K", "W/m**2/K", False, 50.0),
+        ("0.5 W m-1 K-1", "W/m/K", False, 0.5),
+        ("301 kg m-3", "kg/m**3", False, 301.0),
+        ("13 W m−2 K−1", "W/m**2/K", False, 13.0),
+        ("13 W/(m2⋅K)", "W/m**2/K", False, 13.0),
+        ("3 s-1", "1/s", False, 3.0),
+        ("0.25 1", "", False, 0.25),
+        ("20 delta_degC", "K", True, 20.0),
+        ("2 W/m2/delta_degC", "W/m**2/K", False, 2.0),
     ],
 )
 def test_conversion(text, unit, difference, value):
@@ -51,12 +62,40 @@ def test_conversion(text, unit, difference, value):
         ("1 ((((m", "m", "unknown unit", ""),
         ("1 __import__", "m", "unknown unit", ""),
         ("1 " + "m" * 100, "m", "is not a unit", ""),
+        ("0.5 W/mK", "W/m/K", "has the dimension", '"0.5 W/m/K"'),
+        ("5 W/m2K", "W/m**2/K", "'W/m2K' is not a unit", '"5 W/m**2/K"'),
+        ("5 J/kgK", "J/kg/K", "unknown unit 'J/kgK'", '"5 J/kg/K"'),
+        ("20 delta_degC", "K", "'20 delta_degC' is a temperature difference", '"20 degC"'),
+        ("20 Δ°F", "K", "is a temperature difference", '"20 degF"'),
+        ("1 m2**9", "m", "powers of powers", ""),
     ],
 )
 def test_errors(text, unit, message, suggestion):
     with pytest.raises(UnitError, match=message.replace("*", r"\*")) as caught:
         convert(text, unit, "length")
     assert caught.value.suggestion == suggestion
+
+
+def printed():
+    """(text, unit, value in it) of every unit that the product prints: of its variables, in the schema, and on figures."""
+    from mpm.config import schema
+    from mpm.plots import words
+    from mpm.records.variables import TABLE
+
+    plain = {re.sub(r"(?<=[a-z])(\d)", r"**\1", row[2]) for row in TABLE} | set(re.findall(r"like \\\"1 (.*?)\\\"", json.dumps(schema())))
+    for unit in sorted(plain - {"1", "%"}):
+        for text in {unit, unit.replace("**", ""), words.units_text(unit)}:
+            yield f"3 {text}", unit, 3.0
+    yield from (("3 1", "", 3.0), ("3 %", "", 0.03))
+    for unit in ("s", "m", "Pa"):
+        for shown in {words.scale([10.0**power], unit) for power in range(-9, 9)}:
+            yield f"3 {shown.units}", unit, 3.0 / shown.factor
+    yield "20 °C", "K", 293.15
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), list(printed()))
+def test_every_unit_that_is_printed_is_read_back(text, unit, value):
+    assert convert(text, unit, "thing") == pytest.approx(value, rel=1e-14)
 
 
 def test_pint_is_loaded_only_for_text_with_a_unit():

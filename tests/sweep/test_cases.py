@@ -7,6 +7,7 @@ import pytest
 
 from mpm.config import ConfigError, load
 from mpm.sweep.cases import plan
+from mpm.sweep.report import label
 
 SLAB = {
     "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
@@ -224,3 +225,40 @@ def test_a_sobol_sample_grows_without_losing_the_old():
     ranges = {"kappa": [0.2, 0.4], "beta": {"log": [1, 100]}}
     ids = [[case.run_id for case in planned({"sample": {"sobol": {"count": count, "seed": 3, "ranges": ranges}}}).cases] for count in (16, 32, 100)]
     assert ids[1][:16] == ids[0] and ids[2][:32] == ids[1]
+
+
+def told(cases):
+    return [label(case) for case in cases.cases]
+
+
+def test_labels_tell_values_apart():
+    assert told(planned({"axes": {"kappa": [0.3, 0.1 + 0.2]}})) == ["kappa=0.3", "kappa=0.30000000000000004"]
+    assert told(planned({"axes": {"kappa": [0.3, 0.3000001, 1000]}})) == ["kappa=0.3", "kappa=0.3000001", "kappa=1000"]
+    assert told(planned({"axes": {"method.rigid": ["auto", "explicit"]}})) == ["rigid=auto", "rigid=explicit"]
+    assert told(planned({"axes": {"time.step": ["auto", 0.25]}})) == ["step=auto", "step=0.25"]
+    assert len(set(told(planned({"axes": {"kappa": {"linear": [0.3, 0.3 + 1e-13, 100]}}})))) == 100
+    assert len(set(told(planned({"sample": {"sobol": {"count": 256, "ranges": {"kappa": [0.1, 1], "beta": {"log": [1, 100]}}}}})))) == 256
+    bodies = {"bodies": {**SLAB["bodies"], "b": {"shape": {"box": {"lower": [0.06], "upper": [0.08]}}, "material": "n"}}}
+    both = {"materials": {**SLAB["materials"], "n": SLAB["materials"]["m"]}, **bodies}
+    paths = {f"materials.{name}.heat.fourier.kappa": [1, 2] for name in "mn"}
+    assert told(planned({"axes": paths}, **both))[1] == "m_heat_fourier_kappa=1 n_heat_fourier_kappa=2"
+
+
+def test_labels_of_kinds_are_distinct_coordinates():
+    """They are the values of a coordinate: two that are one could not be selected."""
+    laws = [{"table": {"temperature": [300, 400], "value": [1, 1 + step]}} for step in (0.1, 0.1 + 1e-12)]
+    (coordinate,) = planned({"axes": {"kappa": laws}}).dims[0].coords
+    assert len(set(coordinate.values)) == 2
+
+
+def test_more_points_than_can_be_planned_are_refused_at_once():
+    for sweep in ({"axes": {"kappa": {"linear": [1, 2, 10**9]}}}, {"sample": {"sobol": {"count": 10**9, "ranges": {"kappa": [0.1, 1]}}}}):
+        began = time.process_time()
+        with pytest.raises(ConfigError, match=r"1000000000 points, and the limit is 10000000; allowed: fewer points$"):
+            planned(sweep, max_runs=10**10)
+        assert time.process_time() - began < 1.0
+
+
+def test_whole_numbers_in_formulas_are_floats():
+    with pytest.raises(ConfigError, match="a number is too large"):
+        planned({"axes": {"method.particles": [2, 3]}, "derive": {"density": "particles" + "**particles" * 6}})

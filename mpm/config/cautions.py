@@ -1,0 +1,73 @@
+"""Cautions: what is valid in a config and yet seldom meant. Told once, by whoever runs it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from mpm.config.names import ROOT, Names, UnknownName
+from mpm.config.nodes import Node
+from mpm.config.quantities import Quantity
+from mpm.config.slots import Path, Slot, leaves
+
+COLD = 223.15  # K, -50 °C: below it a number without a unit was rather meant in degrees Celsius
+MOST_TOLD = 5
+
+
+def cautions(experiment: Any, root: Node) -> list[str]:
+    """Temperatures that are numbers without a unit, and colder than the applications of this code: 20 is 20 K."""
+    found = []
+    for path, quantity in temperatures(experiment):
+        for node in numbers(root, path):
+            if quantity.unit == "K" and not quantity.difference and 0 < node.value < COLD:
+                place, value = ".".join(map(str, path)), f"{node.value:g}"
+                said = f"{value} without a unit is {value} K, {node.value - 273.15:.4g} °C; say '{value} degC' or '{value} K'"
+                found.append(str(node.origin.problem(node.line, node.column, place, said)))
+    rest = len(found) - MOST_TOLD
+    return found[:MOST_TOLD] + ([f"and {rest} more temperatures without a unit"] if rest > 0 else [])
+
+
+def temperatures(experiment: Any) -> Iterator[tuple[Path, Quantity]]:
+    """Paths of the config that hold a quantity: in its sections, and in what its sweep varies."""
+    for path, slot in leaves(ROOT, experiment):
+        if slot.quantity is not None and path[0] != "sweep":
+            yield path, slot.quantity
+    if experiment.sweep is None:
+        return
+    names = Names(experiment)
+    for path, name in varied(experiment.sweep):
+        try:
+            slot: Slot = names.resolve(name)[1]
+        except UnknownName:
+            continue  # told when the sweep is planned
+        if slot.quantity is not None:
+            yield path, slot.quantity
+
+
+def varied(sweep: Any) -> Iterator[tuple[Path, str]]:
+    """Where each parameter's values stand."""
+    yield from ((("sweep", "axes", name), name) for name in sweep.axes)
+    for form in ("zip", "points"):
+        yield from (((("sweep", form, index, name)), name) for index, entry in enumerate(getattr(sweep, form)) for name in entry)
+    if sweep.sample is not None:
+        yield from ((("sweep", "sample", sweep.sample.kind, "ranges", name), name) for name in sweep.sample.ranges)
+
+
+def numbers(root: Node, path: Path) -> Iterator[Node]:
+    """The plain numbers at a path: one, those of a list, or the ends of a range."""
+    node: Node | None = root
+    for key in path:
+        node = node.child(key) if node is not None else None
+    if node is None:
+        return
+    if isinstance(node.value, dict):
+        for word in ("linear", "log"):
+            if (ends := node.child(word)) is not None and isinstance(ends.value, list):
+                yield from (end for end in ends.value[:2] if plain(end))
+    elif isinstance(node.value, list):
+        yield from (item for item in node.value if plain(item))
+    elif plain(node):
+        yield node
+
+
+def plain(node: Node) -> bool:
+    """Whether a node is a number without a unit."""
+    return isinstance(node.value, int | float) and not isinstance(node.value, bool)
