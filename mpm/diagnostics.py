@@ -7,7 +7,7 @@ import numpy as np
 from mpm.basis import second_moment
 from mpm.boundary import directions, extents
 from mpm.jit import kernel, role
-from mpm.materials import energy, enthalpy, stress, value, warmed
+from mpm.materials import HenckyWarm, energy, enthalpy, stress, value, warmed
 from mpm.materials.laws import Constant
 from mpm.state import Axisymmetric, Expansion, Latched, Line, NoExchange, Plane, Softening, Thermal, Volume
 from mpm.tensors import eigen2, eigen3
@@ -54,6 +54,12 @@ def stored(law, e, V0, theta):
     for i in range(V0.shape[0]):
         total += V0[i] * energy(warmed(law, theta[i]), e[i, 0], e[i, 1], e[i, 2])
     return total
+
+
+def warm_energy(space, bodies) -> float:
+    """Elastic energy of the bodies whose moduli follow temperature [J]: a heat step changes it at the same strain."""
+    warm = [body for body in bodies if isinstance(body.elastic, HenckyWarm)]
+    return sum(stored(body.elastic, strains(space, body.particles.B), body.particles.V0, temperatures(body)) for body in warm)
 
 
 @kernel

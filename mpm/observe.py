@@ -164,12 +164,17 @@ class Recorder:
         yield "strain_max", strain
         yield "energy_kinetic", motion
         yield "energy_elastic", elastic
-        yield "energy_total", motion + elastic - np.sum(m[:, None] * x * scene.gravity)
+        total = motion + elastic - np.sum(m[:, None] * x * scene.gravity)
+        yield "energy_total", total
         yield "dissipation_total", clock.dissipated
+        yield "work_loads", clock.worked
+        self.gone = clock.worked + clock.swelled + clock.softened - clock.dissipated - (total - self.series.get("energy_total", [total])[0])
+        yield "dissipation_transfer", self.gone
 
     def thermal(self, scene, clock):
         """Temperatures, the heat ledger, probes, errors."""
         if not self.warm:
+            yield "energy_ledger", -self.gone
             return
         theta = np.concatenate([body.thermal.zero + body.thermal.theta.astype(float) for body in self.warm])
         total = sum(heat_since(body, self.start[id(body)]) for body in self.warm)
@@ -180,6 +185,7 @@ class Recorder:
         yield "area_exchanging", sum(exchanging_area(body) for body in self.warm)
         yield "heat_exchanged", clock.exchanged
         yield "heat_ledger", total - clock.exchanged - clock.local
+        yield "energy_ledger", total - clock.exchanged - clock.local - self.gone
         for name in self.places:
             yield f"temperature_{name}", self.probe(name)
         if self.origin:

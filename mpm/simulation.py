@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm.boundary import directions, extents
 from mpm.boundary.blocks import new_blocks
+from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
 from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.bounds import bounds_of, keep_between
@@ -25,7 +26,7 @@ from mpm.integrate.heat_step import heat_step
 from mpm.integrate.order import Order
 from mpm.integrate.sharpen import correct, lost_to_grid
 from mpm.integrate.slabs import advance_slabs
-from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
 from mpm.integrate.tears import tear_open
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.lanes import aligned
@@ -38,6 +39,7 @@ from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
+GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED}  # sums over steps
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
 
@@ -95,12 +97,11 @@ class Clock:
         self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = 0.0
-        self.first_step: float | None = None
+        self.worked = self.swelled = self.softened = 0.0  # on motion: by loads, by thermal stress, by moduli that follow temperature
+        self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
         self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
         self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
-        self.swell = 1.0
         self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output, start of its interval, heat step under way, heat steps (0: none yet)
-        self.spent = 0.0  # wall time before the run was cut [s]
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
@@ -118,10 +119,10 @@ class Clock:
         self.reports[:, PARTICLE] = -1
 
     def gather(self, dt: float) -> None:
-        """After a block: rates from increments, and the heat and dissipation of its steps."""
+        """After a block: rates from increments, and the heat, dissipation and work of its steps."""
         self.reports[:, RATE] /= dt
-        self.local += float(np.sum(self.reports[:, HEATED]))
-        self.dissipated += float(np.sum(self.reports[:, DISSIPATED]))
+        for name, place in GATHERED.items():
+            setattr(self, name, getattr(self, name) + float(np.sum(self.reports[:, place])))
 
 
 def simulate(scene: Scene, beat=None, keeper=None) -> Run:
@@ -222,6 +223,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
     clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
+    held = warm_energy(scene.space, scene.bodies)
     for body, one in zip(scene.bodies, scene.surroundings, strict=True):
         walls = scene.walls if one is None else one.mirrors(scene.space, body, scene.walls)
         lost = lost_to_grid(scene, body, buffers[3], walls)
@@ -241,7 +243,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         if between is not None:
             moved, left = keep_between(scene.space, body, buffers[3], walls, *between)
             clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
-    clock.heat_steps += 1
+    clock.heat_steps, clock.softened = clock.heat_steps + 1, clock.softened + warm_energy(scene.space, scene.bodies) - held
     if implicit:
         clock.implicit += 1
     elif substeps > (1 if kind == "explicit" else 2):

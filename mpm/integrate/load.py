@@ -12,6 +12,7 @@ A body without loads compiles none of this.
 
 from mpm.integrate.deformation import carry_one
 from mpm.integrate.source import act
+from mpm.integrate.strain import WORKED
 from mpm.jit import kernel
 from mpm.state import Load
 
@@ -25,6 +26,20 @@ def share(t, ramp):
     return s * s * (3.0 - 2.0 * s)
 
 
+@kernel(inline=True)
+def power(source, m, i, chunk, p, D):
+    """What loads work on particle i in the step that is over [W]: at the velocity and the gradient that it gathered."""
+    total, now = 0.0, share(source.t[i], source.ramp)
+    for c in range(D):
+        total -= source.rate * m * chunk.v[c, p] * chunk.v[c, p]
+        if source.loaded[i]:
+            total += now * source.force[i, c] * chunk.v[c, p]
+            for d in range(D):
+                for k in range(D):
+                    total += now * source.dipole[i, c, k] * source.F[i, d, k] * chunk.L[c, d, p]
+    return total
+
+
 @act.register(Load)
 def _(source, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
@@ -32,6 +47,7 @@ def _(source, body, chunk, first, count, dt, next_dt, report):
     for p in range(count):
         i = first + p
         if dt > 0.0:
+            report[WORKED] += dt * power(source, particles.m[i], i, chunk, p, D)
             source.t[i] += dt
         drag = next_dt * source.rate * particles.m[i]
         for c in range(D):

@@ -7,7 +7,7 @@ In three dimensions without principal axes (mpm.isotropic), in a plane with thos
 from mpm.heat.local import latch, temperature, thermal_stress
 from mpm.heat.many import grow_warmer, heat_eight
 from mpm.integrate.deformation import carry_owners
-from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, deliver_plane, deliver_volume, fail
+from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, SWELLED, deliver_plane, deliver_volume, fail
 from mpm.isotropic import exponential3, largest, logarithm3, lowest3, norm, split
 from mpm.jit import kernel, role
 from mpm.lanes import (
@@ -79,25 +79,21 @@ def _(heating):
 
 
 @role
-def latches(expansion):
-    """Whether the highest temperature so far is remembered: a constant at compile time."""
+def swells(expansion):
+    """Whether thermal stress works on what stretches: a constant at compile time."""
     raise TypeError(f"no thermal stress in {type(expansion).__name__}")
 
 
-@latches.register(NoExpansion)
-@latches.register(Expansion)
+@swells.register(NoExpansion)
 def _(expansion):
     return False
 
 
-@latches.register(Latched)
+@swells.register(Expansion)
+@swells.register(Latched)
+@swells.register(Softening)
 def _(expansion):
     return True
-
-
-@latches.register(Softening)
-def _(expansion):
-    return latches(expansion.inner)
 
 
 @kernel(inline=True)
@@ -137,6 +133,8 @@ def heat_all(body, chunk, first, p, count, report):
             grow_warmer(body.thermal, i, item(risen, k))
             report[HEATED] += V0 * item(gained, k)
         report[DISSIPATED] += V0 * float(peek(e, LOST * n + p + k))
+        if swells(body.expansion):
+            report[SWELLED] += V0 * float(peek(e, PRESSURE * n + p + k)) * float(peek(e, GROW * n + p + k))
         latch(body.expansion, body.thermal, i)
 
 
@@ -156,9 +154,9 @@ def answer(body, chunk, first, p, count, trace, deviator, dt, report):
         trace, share, lost, flowed, good = flow_lanes(body.flow, trace, deviator, lam, mu, thermal, theta, load8(e, JACOBIAN * n + p), dt)
         if not least(good) > 0.5:
             blame(report, RETURN_MAP, good, first + p, count - p)
-        if warms(body.heating) or latches(body.expansion) or most(flowed) > 0.5:
+        if warms(body.heating) or swells(body.expansion) or most(flowed) > 0.5:
             store(e, LOST * n + p, lost)
-            if warms(body.heating):
+            if warms(body.heating) or swells(body.expansion):
                 store(e, GROW * n + p, (trace - before) + log1p(load8(e, GROW * n + p)))
             heat_all(body, chunk, first, p, count, report)
         if warms(body.heating):

@@ -10,8 +10,8 @@ import math
 from mpm.basis import inverse_moment
 from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
 from mpm.integrate import react_neo_hookean  # noqa: F401 - registers the law
-from mpm.integrate.react import ACROSS, carry_surface, flows, react_plane, react_volume
-from mpm.integrate.strain import CODE, DISSIPATED, HEATED, HOOP, STRAIN, fail, guard, strain_plane, strain_volume
+from mpm.integrate.react import ACROSS, carry_surface, flows, react_plane, react_volume, swells
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, HOOP, STRAIN, SWELLED, fail, guard, strain_plane, strain_volume
 from mpm.jit import kernel, role
 from mpm.lanes import EIGHT, load8, peek, poke, store
 from mpm.materials import flow, settled, stress, warmed
@@ -58,7 +58,10 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
         if not ok:
             fail(report, RETURN_MAP, i)
         density = body.particles.m[i] / body.particles.V0[i]
-        gained = heat_locally(body.heating, body.thermal, i, density, e1 + e2 + e3 - trace_before, lost)
+        stretched = e1 + e2 + e3 - trace_before
+        gained = heat_locally(body.heating, body.thermal, i, density, stretched, lost)
+        if swells(body.expansion):
+            report[SWELLED] += body.particles.V0[i] * thermal * stretched
         report[HEATED] += body.particles.V0[i] * gained
         report[DISSIPATED] += body.particles.V0[i] * lost
         latch(body.expansion, body.thermal, i)

@@ -23,7 +23,7 @@ from mpm.boundary.walls import empty
 from mpm.integrate.dither import dither
 from mpm.integrate.explicit import clean, on_nodes, step_chunk
 from mpm.integrate.locking import any_averages
-from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.touch import SLACK, reaches, touch
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
@@ -184,7 +184,7 @@ def together(report: np.ndarray, found: np.ndarray) -> None:
     for place in (SPEED, RATE, SWELL):
         report[place] = found[:, place].max()
     report[STRAIN] = found[:, STRAIN].min()
-    for place in (HEATED, DISSIPATED):
+    for place in (HEATED, DISSIPATED, WORKED, SWELLED):
         report[place] = sum(found[:, place].tolist())
 
 

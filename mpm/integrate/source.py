@@ -5,7 +5,7 @@ Laws are in mpm.sources. A body without a source compiles none of this.
 """
 
 from mpm.heat.local import rise
-from mpm.integrate.strain import HEATED
+from mpm.integrate.strain import HEATED, WORKED
 from mpm.jit import role
 from mpm.sources import heat, push
 from mpm.state import Isothermal, NoSource, Source, Thermal
@@ -46,6 +46,8 @@ def _(source, body, chunk, first, count, dt, next_dt, report):
         i = first + p
         if dt > 0.0:
             report[HEATED] += particles.m[i] * take_up(body.thermal, i, dt * heat(source.law, source.X, i, source.t[i] + 0.5 * dt))
+            for c in range(particles.v.shape[1]):
+                report[WORKED] += dt * particles.m[i] * push(source.law, source.X, i, c, source.t[i]) * chunk.v[c, p]
             source.t[i] += dt
         for c in range(particles.v.shape[1]):
             chunk.f[c, p] += next_dt * particles.m[i] * push(source.law, source.X, i, c, source.t[i])

@@ -62,7 +62,10 @@ TABLE = [
     ("energy.kinetic", "", "J", SERIES, "kinetic energy"),
     ("energy.elastic", "", "J", SERIES, "elastic energy"),
     ("energy.total", "", "J", SERIES, "kinetic, elastic and gravitational energy"),
+    ("energy.ledger", "", "J", SERIES, "energy and heat gained or dissipated, less work of loads and heat taken in: what the method made"),
     ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
+    ("dissipation.transfer", "", "J", SERIES, "energy of motion that no law of the config took: lost in transfers, at walls and by the time step"),
+    ("work.loads", "", "J", SERIES, "work of loads on the bodies since the start"),
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
     ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
@@ -137,7 +140,8 @@ TABLE = [
 ]
 
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
-NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")
+NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "work.loads", "velocity.max",
+                  "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
 FIELDS_GRID = ("temperature", "velocity", "density")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])

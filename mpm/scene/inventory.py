@@ -28,7 +28,7 @@ def physics(experiment) -> dict[str, list[str]]:
 def output_bytes(experiment, particles: int) -> int:
     """Bytes of a point's file: series in float64, snapshots in float32 (grid) and float64 (particles), before compression."""
     samples = math.ceil(experiment.time.end / experiment.output.every) + 1
-    size = 4_000 + samples * 8 * (25 + len(experiment.output.probes))
+    size = 4_000 + samples * 8 * (28 + len(experiment.output.probes))
     snapshots = experiment.output.snapshots
     if snapshots is not None:
         frames = math.ceil(experiment.time.end / snapshots.every) + 1

@@ -57,6 +57,9 @@ def test_static_bar_at_finite_strain(core, T):
     assert run.outcome.ok
     assert run.series["position_mean_x"][-1] - 1.07 / 2 == pytest.approx(1.07 / 2 * (low - 1), rel=3e-3)
     assert np.log(end.bodies[0].particles.J[start < 0.6]) == pytest.approx(math.log(low), rel=6e-3)
+    stored = 1.07 * math.log(low) ** 2 / 2  # what is left of the work of traction and drag once all is at rest
+    assert run.finals["work_loads"] == pytest.approx(stored, rel=1.2e-2)  # twice the tolerance of the strain
+    assert abs(run.finals["dissipation_transfer"]) < 1e-2 * stored and run.finals["energy_ledger"] == -run.finals["dissipation_transfer"]
 
 
 def test_drag_alone_slows_by_its_rate(core):

@@ -1,0 +1,72 @@
+"""The ledger of energy: what nothing in a config accounts for goes to nothing with FLIP, so every term is there; what a transfer takes is told."""
+
+import numpy as np
+import pytest
+
+import mpm
+
+BAR = {"box": {"lower": [1.0], "upper": [6.0]}}
+GRID = {"dimension": 1, "size": [7.0], "cell": 0.125}
+FLIP = {"transfer": {"flip": {}}, "temperature": {"flip": {}}}
+
+
+def bar(core, drop=(), changes=None, **sections):
+    bodies = {"body": {"shape": BAR, "temperature": core.HOT, "material": "solid"}}
+    return core.experiment(1, changes, drop, grid=GRID, bodies=bodies, **({"time": {"end": 4.0}, "output": {"every": 0.5}} | sections))
+
+
+def swing(scene):
+    p = scene.bodies[0].particles
+    p.v[:, 0] = 0.1 * np.sin(np.pi * (p.x[:, 0] - 3.5) / 5.0)
+
+
+def test_expansion_and_what_it_heats(core):
+    """A bar that its air warms expands, and cools where it stretches: thermal stress works as much as is stored, moves and becomes heat."""
+    air = [{"of": "body", "convection": {"beta": 5.0, "outside": core.HOT + 60}}]
+    hot = {"gamma": 0.02, "output.every": 0.25, "kappa": 2.0}
+    run = core.play(bar(core, changes=hot, surfaces=air, method=FLIP, time={"end": 8.0}))[1]
+    stored = run.series["energy_elastic"] + run.series["energy_kinetic"]
+    assert run.outcome.ok and stored.max() > 1e-3
+    assert np.abs(run.series["dissipation_transfer"]).max() < 0.02 * stored.max()
+    assert np.abs(run.series["energy_ledger"] + run.series["dissipation_transfer"] - run.series["heat_ledger"]).max() < 1e-12 * run.series["heat_total"].max()
+
+
+def test_flow(core):
+    """A bar that swings past its yield stress: what flow dissipates is what is missing."""
+    flow = {"ellipse": {"M": 0.05, "p0": 1.0, "eta": 1.0}}
+    data = bar(core, ("surfaces", "expansion", "heating", "heat"), method={"transfer": {"flip": {}}}).resolved()
+    data["materials"]["solid"]["flow"] = flow
+    run = core.play(mpm.load(data), swing)[1]
+    assert run.outcome.ok and run.finals["dissipation_total"] > 0.3 * run.series["energy_kinetic"][0]
+    assert abs(run.finals["dissipation_transfer"]) < 0.02 * run.finals["dissipation_total"]
+
+
+def test_moduli_that_follow_temperature(core):
+    """A bar that expands while its modulus falls: the energy that softening takes is no loss."""
+    air = [{"of": "body", "convection": {"beta": 5.0, "outside": core.HOT + 60}}]
+    data = bar(core, ("heating",), surfaces=air, method=FLIP, time={"end": 8.0}).resolved()
+    solid = data["materials"]["solid"]
+    solid["elastic"] = {"hencky": {"E": {"table": {"temperature": [core.HOT, core.HOT + 60], "value": [5.0, 1.0]}}, "nu": 0.3}}
+    solid["expansion"] = {"linear": {"coefficient": 1e-3, "reference": core.HOT}}
+    solid["heat"]["fourier"]["kappa"] = 2.0
+    run = core.play(mpm.load(data))[1]
+    stored = run.series["energy_elastic"] + run.series["energy_kinetic"]
+    assert run.outcome.ok and run.series["energy_elastic"].max() > 1.5 * run.finals["energy_elastic"] > 0
+    assert np.abs(run.series["dissipation_transfer"]).max() < 0.03 * stored.max()
+
+
+def test_what_apic_takes(core):
+    """A bar that swings in waves of eight cells: nothing but the transfer takes its energy, affine FLIP least."""
+
+    def wave(scene):
+        p = scene.bodies[0].particles
+        p.v[:, 0] = 0.1 * np.sin(2 * np.pi * (p.x[:, 0] - 3.5))
+
+    took = {}
+    for transfer in ("apic", "affine_flip"):
+        data = bar(core, ("surfaces", "expansion", "heating", "heat"), method={"transfer": {transfer: {}}}, time={"end": 2.0})
+        run = core.play(data, wave)[1]
+        energy = run.series["energy_total"]
+        assert run.series["dissipation_transfer"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-15 * energy[0])
+        took[transfer] = run.finals["dissipation_transfer"] / energy[0]
+    assert abs(took["affine_flip"]) < 0.1 and took["apic"] > 0.3
