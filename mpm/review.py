@@ -1,7 +1,8 @@
 """Review: what of a run's records a careful user wants to know, as warnings (mpm.warned). What only a running scene can see is warned of by mpm.guards.
 
-volume    the whole volume is off its start by more than VOLUME beyond what the expansion of the temperatures reached explains
+volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion at the temperatures reached explains; not where loads press
 heat      heat content and heat taken in disagree by more than HEAT of the larger
+energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads
 thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
 edge      material is within a cell of an open side of the domain, and was not at the start
@@ -18,7 +19,7 @@ from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
 
-VOLUME, HEAT, THIN = 0.1, 0.01, 2.0
+VOLUME, HEAT, ENERGY, THIN = 0.1, 0.01, 0.2, 2.0
 SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
 
 
@@ -51,11 +52,11 @@ def extents(experiment: Any, run: Run) -> dict[str, np.ndarray]:
 def volume(experiment: Any, run: Run) -> Iterator[str]:
     if "volume_total" not in run.series:
         return
-    ratio, (least, most) = run.series["volume_total"] / run.series["volume_total"][0], explained(experiment, run)
-    lost, gained = 1 - float(ratio.min()) / least, float(ratio.max()) / most - 1
-    for share, word, at in ((lost, "lost", ratio.argmin()), (gained, "gained", ratio.argmax())):
+    ratio, (least, most) = float(run.series["volume_total"][-1] / run.series["volume_total"][0]), explained(experiment, run)
+    pressed = any(load.traction is not None for load in experiment.loads)
+    for share, word in ((0.0 if pressed else 1 - ratio / least, "lost"), (ratio / most - 1, "gained")):
         if share > VOLUME:
-            yield f"{100 * share:.0f} % of the volume is {word} by t = {run.times[at]:.4g} s, beyond what expansion explains"
+            yield f"{100 * share:.0f} % of the volume is {word} by the end, beyond what expansion explains"
 
 
 def heat(experiment: Any, run: Run) -> Iterator[str]:
@@ -65,6 +66,22 @@ def heat(experiment: Any, run: Run) -> Iterator[str]:
     off = np.abs(run.series["heat_ledger"]).max()
     if off > HEAT * most > 0:
         yield f"heat content and heat taken in disagree by {off:.3g} J, {100 * off / most:.2g} % of the larger"
+
+
+def turned_over(series: dict[str, np.ndarray]) -> float:
+    """The energy that a motion turns over: the largest that it holds, dissipates or takes from loads [J]."""
+    held = series["energy_kinetic"] + series["energy_elastic"]
+    return float(max(np.abs(values).max() for values in (held, series["dissipation_total"], series["work_loads"])))
+
+
+def energy(experiment: Any, run: Run) -> Iterator[str]:
+    if "dissipation_transfer" not in run.series:
+        return
+    gone, most = run.series["dissipation_transfer"], turned_over(run.series)
+    worst = float(gone[np.argmax(np.abs(gone))])
+    if abs(worst) > ENERGY * most > 0:
+        said = "is lost to transfers, walls and time steps" if worst > 0 else "comes from nowhere"
+        yield f"{abs(worst):.3g} J, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
 
 
 def thin(experiment: Any, run: Run) -> Iterator[str]:
@@ -100,4 +117,4 @@ def edge(experiment: Any, run: Run) -> Iterator[str]:
                 yield f"material is within a cell of the open side {side} from t = {run.times[near[0]]:.4g} s on"
 
 
-LOOKS = {"volume": volume, "heat": heat, "thin": thin, "probe": probe, "edge": edge}
+LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "edge": edge}
