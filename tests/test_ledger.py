@@ -70,3 +70,19 @@ def test_what_apic_takes(core):
         assert run.series["dissipation_transfer"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-15 * energy[0])
         took[transfer] = run.finals["dissipation_transfer"] / energy[0]
     assert abs(took["affine_flip"]) < 0.1 and took["apic"] > 0.3
+
+
+def test_loads_in_the_total_frame(core):
+    """Pulled slowly to rest, the bar stores what traction and drag worked on it: M e^2/2 of its volume, with e/exp(e) = T/M."""
+    bodies = {"body": {"shape": {"box": {"lower": [0], "upper": [1.07]}}, "material": "solid"}}
+    run = core.play(mpm.load(core.config(
+        1, grid={"dimension": 1, "size": [2.0], "cell": 0.0625}, bodies=bodies, surfaces=[], method={"frame": "total"},
+        materials={"solid": {"density": 1.0, "elastic": {"hencky": {"lam": 0.2, "mu": 0.4}}}}, walls={"left": "stick"},
+        loads=[{"of": "body", "side": "right", "traction": {"nominal": [0.08], "ramp": 8.0}}, {"of": "body", "drag": {"rate": 3.0}}],
+        time={"end": 24.0}, output={"every": 12.0},
+    )))[1]  # fmt: skip
+    e = 0.08
+    for _ in range(50):
+        e = 0.08 * np.exp(e)
+    assert run.outcome.ok and run.finals["work_loads"] == pytest.approx(1.07 * e * e / 2, rel=2e-3)
+    assert abs(run.finals["dissipation_transfer"]) < 2e-3 * run.finals["work_loads"]

@@ -17,7 +17,7 @@ import numpy as np
 from mpm.basis import stencil
 from mpm.boundary import directions
 from mpm.integrate.load import share
-from mpm.integrate.strain import CODE, STEP, STRAIN
+from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
 from mpm.total.reference import fold, hold, mirror
@@ -36,6 +36,7 @@ def advance_total(space, body, reference, gravity, dt, steps, report):
         if report[CODE] == 0.0:
             opening = step == 0
             kick(reference, gravity, 1.0 - x if opening else (1.0 - x) / (1.0 + x), 0.5 * dt if opening else dt / (1.0 + x))
+            report[WORKED] += dt * power(reference, dt)
             drift(reference, dt)
             squeeze = max(squeeze, force_all(space, body, reference, chunk, dt, report))
             report[STEP] = step
@@ -56,6 +57,20 @@ def kick(reference, gravity, keep, push):
             for c in range(D):
                 v[n, c] += now * load[n, c] * inverse
     hold(v, reference)
+
+
+@kernel
+def power(reference, dt):
+    """What tractions and drag work on the nodes in the middle of the coming step [W]."""
+    v, m, load, D = reference.v, reference.m, reference.load, reference.X.shape[1]
+    total, now = 0.0, share(reference.t[0] + 0.5 * dt, reference.ramp)
+    if load.shape[0] > 0 or reference.drag > 0.0:
+        for n in reference.active:
+            for c in range(D):
+                total -= reference.drag * m[n] * v[n, c] * v[n, c]
+                if load.shape[0] > 0:
+                    total += now * load[n, c] * v[n, c]
+    return total
 
 
 @kernel
