@@ -39,7 +39,7 @@ from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
-GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED}  # sums over steps
+GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED}  # sums over steps; worked by loads, swelled by thermal stress
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
 
@@ -96,8 +96,7 @@ class Clock:
         self.time, self.steps, self.heat_steps = 0.0, 0, 0
         self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
         self.bound: dict[str, int] = {}
-        self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = 0.0
-        self.worked = self.swelled = self.softened = 0.0  # on motion: by loads, by thermal stress, by moduli that follow temperature
+        self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
         self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
         self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
         self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
