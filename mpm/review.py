@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.records.variables import describe
 from mpm.scene.build import elastic_law, stress_temperature_modulus
 from mpm.scene.shapes import shape
 from mpm.state import Run
@@ -59,13 +60,18 @@ def volume(experiment: Any, run: Run) -> Iterator[str]:
             yield f"{100 * share:.0f} % of the volume is {word} by the end, beyond what expansion explains"
 
 
+def joules(experiment: Any) -> str:
+    """The unit of a total of energy."""
+    return describe("energy_total", experiment.grid.dimension).units
+
+
 def heat(experiment: Any, run: Run) -> Iterator[str]:
     if "heat_ledger" not in run.series:
         return
     most = max(np.abs(run.series[name]).max() for name in ("heat_total", "heat_exchanged"))
     off = np.abs(run.series["heat_ledger"]).max()
     if off > HEAT * most > 0:
-        yield f"heat content and heat taken in disagree by {off:.3g} J, {100 * off / most:.2g} % of the larger"
+        yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {100 * off / most:.2g} % of the larger"
 
 
 def turned_over(series: dict[str, np.ndarray]) -> float:
@@ -81,7 +87,7 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
     worst = float(gone[np.argmax(np.abs(gone))])
     if abs(worst) > ENERGY * most > 0:
         said = "is lost to transfers, walls and time steps" if worst > 0 else "comes from nowhere"
-        yield f"{abs(worst):.3g} J, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
+        yield f"{abs(worst):.3g} {joules(experiment)}, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
 
 
 def thin(experiment: Any, run: Run) -> Iterator[str]:

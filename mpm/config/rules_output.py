@@ -11,7 +11,7 @@ from mpm.config.shapes_fit import bounds, home, misfits
 
 MOST_SAMPLES, MOST_NAMED = 10**6, 4
 OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff",
-             "mass", "volume")  # fmt: skip
+             "mass", "volume", "work")  # fmt: skip
 
 
 def clock(experiment: Any) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ from mpm.scene.scales import Scales
 BOTH, DRIFT = 0.4, 0.3  # of a squared cell over the radius: at once, and a transit of the elastic wave
 ROOM = 2.0  # cells between a round body and the walls beside it
 SCALAR = ("velocity_max", "J_min", "J_max", "pressure_mean", "strain_max", "mass_total", "volume_total", "energy_kinetic", "energy_elastic", "energy_total",
-          "dissipation_total")  # fmt: skip
+          "dissipation_total", "work_loads")  # fmt: skip
 DIRECTED = ("momentum_", "position_mean_", "position_min_", "position_max_", "extent_")
 HEAT = ("temperature_", "heat_", "time_to_")
 
