@@ -34,7 +34,7 @@ from mpm.memory import arrays, fill
 from mpm.observe import Recorder
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
-from mpm.total.drive import advance_references, present_limits, show_all
+from mpm.total.drive import advance_references, present_limits, show_all, warm_references
 from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
@@ -210,8 +210,8 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
 def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
     """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
-    if not now.heat and not around:  # without conduction a given flux still heats
-        return outcome(COMPLETED)
+    if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
+        return warm_references(scene, clock, dt) if now.heat or around else outcome(COMPLETED)
     tear_open(scene)
     for body, one in around:
         one.write(scene.space, body, clock.time, dt)

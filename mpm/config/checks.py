@@ -97,5 +97,4 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (framing.frame, once),
     (framing.frame_wall, each("walls")),
     (framing.frame_material, each("materials")),
-    (framing.frame_exact, once),
 ]

@@ -7,7 +7,7 @@ from mpm.config.explain import Finding
 from mpm.config.loose import Unknown
 from mpm.config.rules_scene import moves
 
-OWN = "leave it out: velocities stay on the nodes, with the gradient of the basis itself; or method.frame: updated"
+OWN = "leave it out: velocities and temperatures stay on the nodes; or method.frame: updated"
 UPDATED = "method.frame: updated"
 
 
@@ -31,8 +31,12 @@ def frame(experiment: Any) -> Iterator[Finding]:
         yield Finding(("method", "frame"), "one body only: bodies in the total frame would pass through one another", UPDATED, given="total")
     if known(lambda: method.transfer.kind != "apic"):
         yield Finding(("method", "transfer"), "the total frame transfers nothing", OWN, on_key=True)
-    if known(lambda: method.locking is not None):
-        yield Finding(("method", "locking"), "the total frame has no cure of locking yet", UPDATED, on_key=True)
+    if known(lambda: method.temperature.kind != "apic"):
+        yield Finding(("method", "temperature"), "the total frame transfers nothing", OWN, on_key=True)
+    if known(lambda: method.heat.kind not in ("auto", "implicit")):
+        yield Finding(("method", "heat"), "heat in the total frame steps implicitly", ["auto", "implicit", UPDATED], on_key=True)
+    if known(lambda: method.bounds is not None):
+        yield Finding(("method", "bounds"), "the total frame has no keeper of bounds yet", UPDATED, on_key=True)
     if known(lambda: method.fracture != "warn"):
         yield Finding(("method", "fracture"), "bodies in the total frame do not come apart", UPDATED, on_key=True)
     if known(lambda: method.particles < 2):
@@ -42,15 +46,18 @@ def frame(experiment: Any) -> Iterator[Finding]:
 
 
 def frame_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
+    if experiment.method.frame == "total" and getattr(item, "heat", None) is not None:
+        said = "walls exchange no heat in the total frame: what lies on one exchanges through its own surface"
+        yield Finding(("walls", side, item.kind, "heat"), said, ["an entry under surfaces", UPDATED], on_key=True)
     if experiment.method.frame == "total" and item.kind == "contact":
         yield Finding(("walls", side), "the total frame has no contact yet: it holds what lies on a wall at the start", ["slip", "stick", UPDATED], on_key=True)
 
 
 def frame_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
-    if experiment.method.frame == "total" and item.heat is not None and item.elastic is not None:
-        yield Finding(("materials", name, "heat"), "the total frame has no heat yet", UPDATED, on_key=True)
-
-
-def frame_exact(experiment: Any) -> Iterator[Finding]:
-    if experiment.method.frame == "total" and experiment.exact is not None and experiment.exact.kind == "manufactured":
-        yield Finding(("exact", "manufactured"), "the total frame has no sources of force and heat yet", UPDATED, on_key=True)
+    if experiment.method.frame != "total" or item.elastic is None:
+        return
+    if item.heat is not None and known(lambda: item.heat.alpha.kind != "constant"):
+        said = "the total frame has no specific heat that follows temperature yet"
+        yield Finding(("materials", name, "heat", "fourier", "alpha"), said, ["a number", UPDATED], on_key=True)
+    if item.heating is not None and known(lambda: item.heating.elastic.form == "grid"):
+        yield Finding(("materials", name, "heating", "elastic", "form"), "the total frame heats its particles, along the adiabat", "adiabat", on_key=True)

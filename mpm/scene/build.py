@@ -43,7 +43,7 @@ from mpm.state import (
     Thermal,
     Volume,
 )  # fmt: skip
-from mpm.total.reference import project
+from mpm.total.drive import begin as begin_nodes
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
 
 SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
@@ -213,8 +213,8 @@ def build(experiment, exact=None) -> Scene:
     times, references = output_times(experiment), ()
     if experiment.method.frame == "total":
         from mpm.scene.total import total_bodies  # which asks this module for laws
-        bodies, references = total_bodies(experiment, space)
-        surroundings = seams = (None,) * len(names)
+        bodies, references, surroundings = total_bodies(experiment, zero, space)
+        seams = (None,) * len(names)
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
         bodies, surroundings, seams, outlines = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
@@ -231,7 +231,7 @@ def build(experiment, exact=None) -> Scene:
         first, exact = exact.begin(bodies[0])
         bodies = (first, *bodies[1:])
     for body, reference in zip(bodies, references, strict=False):
-        project(space, reference, body.particles)
+        begin_nodes(space, body, reference)
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),

@@ -1,19 +1,22 @@
 """Bodies of a config in the total frame: points, nodes, what walls hold of them, tractions (mpm.total)."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
-from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
-from mpm.scene.build import SIDES, STRAINS, elastic_law, spin_tensor, wall_kinds
+from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, value
+from mpm.scene.build import SIDES, STRAINS, elastic_law, expansion_law, spin_tensor, wall_kinds
+from mpm.scene.exchange import exchanging_surface
 from mpm.scene.law import law
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
-from mpm.state import PAD, Body, Isothermal, NoExchange, NoExpansion, NoHeating, Particles
+from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Particles, Surface, Thermal
+from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, new_nodes
 from mpm.total.step import courant_of
 
@@ -22,13 +25,13 @@ FACING = 0.1  # of a unit normal
 FLUSH = 1e-9  # of the domain
 
 
-def total_bodies(experiment, space) -> tuple[tuple, tuple]:
-    """(bodies, references)."""
-    return tuple(zip(*(total_body(experiment, name, space) for name in experiment.bodies), strict=True))
+def total_bodies(experiment, zero: float, space) -> tuple[tuple, tuple, tuple]:
+    """(bodies, references, what surrounds each: mpm.integrate.surroundings.Surroundings or None)."""
+    return tuple(zip(*(total_body(experiment, name, zero, space) for name in experiment.bodies), strict=True))
 
 
-def total_body(experiment, name: str, space) -> tuple[Body, Reference]:
-    """(body, reference) of one body."""
+def total_body(experiment, name: str, zero: float, space):
+    """(body, reference, surroundings) of one body."""
     config, grid, method = experiment.bodies[name], experiment.grid, experiment.method
     material, dtype, D = experiment.materials[config.material], np.dtype(method.precision), grid.directions
     outline = shape(config.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
@@ -56,8 +59,22 @@ def total_body(experiment, name: str, space) -> tuple[Body, Reference]:
         slope += spin
     arrays = (x, velocity, slope, np.zeros((len(x), STRAINS[D])), np.ones(len(x)), material.density * V, V)
     particles = Particles(*(np.array(a, dtype=dtype) for a in arrays))
-    body = Body(particles, Isothermal(config.temperature), NoExchange(), elastic, flow, NoExpansion(), NoHeating())
-    return body, reference_of(experiment, name, space, body, surface, lower, upper)
+    thermal, skin, expansion, heating, around = Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
+    if material.heat is not None:
+        theta = np.full(len(x), config.temperature - zero, dtype)
+        thermal = Thermal(theta, np.zeros((len(x), D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
+        pieces = SimpleNamespace(owner=np.zeros(len(surface.w), np.int64), volume=V, centroid=np.zeros((1, D)), area=surface.w, normal=surface.normal,
+                                 point=surface.x)  # fmt: skip
+        skin, around, _ = exchanging_surface(experiment, name, pieces, zero, SIDES[grid.dimension], thermal)
+    if isinstance(skin, Surface):
+        skin = skin._replace(row=np.full(len(x), -1, np.int32))  # points of the surface belong to no particle here
+    if material.expansion is not None:
+        expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
+    if material.heating is not None:
+        gamma = expansion.gamma if material.heating.elastic is not None else 0.0
+        heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
+    body = Body(particles, thermal, skin, elastic, flow, expansion, heating)
+    return body, reference_of(experiment, name, space, body, surface, lower, upper), around
 
 
 def reference_of(experiment, name: str, space, body, surface, lower, upper) -> Reference:
@@ -76,7 +93,31 @@ def reference_of(experiment, name: str, space, body, surface, lower, upper) -> R
     plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
     courant = courant_of(space, X.astype(float), *stiffest(body))
     m, load, sign = (np.ascontiguousarray(a, dtype=dtype) for a in (m, load, sign))
-    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, held, np.zeros(1), ramp, drag, courant)
+    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, held, np.zeros(1), ramp, drag, courant,
+                     warmth_of(space, body, walls, experiment.grid.size))  # fmt: skip
+
+
+def warmth_of(space, body, walls, size):
+    """Nodes of heat. A wall that the body lies on mirrors temperature unless something is exchanged there."""
+    if not isinstance(body.thermal, Thermal):
+        return NoWarmth()
+    skin, walls, D = body.surface, walls.copy(), directions(space)
+    x, area = (skin.offset, skin.area) if isinstance(skin, Surface) else (np.zeros((0, D)), np.zeros((0, D)))
+    for axis in range(D):
+        for end in range(2):
+            place = size[axis] if end else 0.0
+            if np.any(np.abs(x[:, axis] - place) <= FLUSH * size[axis]) and not (isinstance(space, Axisymmetric) and axis == 0 and end == 0):
+                walls[axis, end] = CONTACT
+    p, n = body.particles, math.prod(extents(space))
+    capacity = p.m.astype(float) * value(body.thermal.alpha, body.thermal.zero)
+    C = weigh(space, p.x.astype(float), capacity[:, None], n)[:, 0]
+    touched = np.flatnonzero(C > 0)
+    ghost, image, _, _ = mirrors(space, walls, touched)
+    for g, i in zip(ghost, image, strict=True):
+        C[i] += C[g]
+    active = np.setdiff1d(np.union1d(touched, image), ghost)
+    touched = np.union1d(touched, np.concatenate([ghost, image]))
+    return Warmth(np.zeros(n), C, touched, active, ghost, image, np.ascontiguousarray(x), np.ascontiguousarray(area), np.linalg.norm(area, axis=1))
 
 
 def bonded(experiment, name: str, surface, lower, upper) -> np.ndarray:
@@ -128,8 +169,8 @@ def mirrors(space, walls, touched):
 def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
     """sum w values on the nodes (n, C) of points x (Q, D) with values (Q, C)."""
     found, x = np.zeros((values.shape[1], n)), np.ascontiguousarray(x, dtype=float)
-    for row, value in zip(found, values.T, strict=True):
-        nodal(space, x, np.ascontiguousarray(value, dtype=float), row)
+    for row, column in zip(found, values.T, strict=True):
+        nodal(space, x, np.ascontiguousarray(column, dtype=float), row)
     return found.T
 
 

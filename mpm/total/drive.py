@@ -3,9 +3,39 @@
 from dataclasses import replace
 
 from mpm.boundary import directions
+from mpm.diagnostics import nodal
 from mpm.integrate.timestep import WAVE, Limits, limits
-from mpm.total.reference import show
+from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
+from mpm.state import Average, Thermal
+from mpm.total.heat import begin_heat, warm
+from mpm.total.reference import project, show
 from mpm.total.step import advance_total
+
+
+def begin(space, body, reference) -> None:
+    """Nodes from what the particles of a body are given at the start."""
+    project(space, reference, body.particles)
+    if isinstance(body.locking, Average):
+        nodal(space, reference.X.astype(float), body.particles.V0.astype(float), body.locking.volume)
+        for ghost, image in zip(reference.ghost, reference.image, strict=True):
+            body.locking.volume[image] += body.locking.volume[ghost]
+    if isinstance(body.thermal, Thermal):
+        begin_heat(space, reference.X.astype(float), body.particles.m.astype(float), body.thermal, reference.warmth)
+
+
+def warm_references(scene, clock, dt: float) -> Outcome:
+    """One heat step of every body that has heat."""
+    for body, reference, around in zip(scene.bodies, scene.references, scene.surroundings, strict=True):
+        if not isinstance(body.thermal, Thermal):
+            continue
+        if around is not None:
+            around.write(scene.space, body, clock.time, dt)
+        gained, count = warm(scene.space, body, reference, dt, scene.heat.tolerance)
+        if count < 0:
+            return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
+        clock.exchanged, clock.iterations = clock.exchanged + gained, clock.iterations + count
+    clock.heat_steps, clock.implicit = clock.heat_steps + 1, clock.implicit + 1
+    return outcome(COMPLETED)
 
 
 def show_all(scene) -> None:

@@ -4,12 +4,13 @@ The particles of the body (mpm.state.Particles) hold what records want: x, v, C 
 flow remember are used by steps; x, v and C are written by `show`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mpm.jit import kernel
 from mpm.lanes import aligned
+from mpm.state import Axisymmetric
 from mpm.transfer import CHUNK, Bspline, columns, gather, lay_down, new_chunk, scatter
 
 
@@ -36,6 +37,7 @@ class Reference(NamedTuple):
     ramp: float  # time to full load [s]
     drag: float  # rate of the drag [1/s]
     courant: float  # largest stable step in h sqrt(R0/(D lam + 2 mu)), at rest
+    warmth: Any  # mpm.total.heat.Warmth or NoWarmth
 
 
 @kernel
@@ -121,27 +123,39 @@ def show(space, particles, reference):
                     particles.C[first + p, c, d] = rate
 
 
-def gradients(space, reference) -> np.ndarray:
-    """F - 1 of every particle (N, D, D)."""
-    out = np.zeros((*reference.X.shape, reference.X.shape[1]))
+def gradients_at(space, reference, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(F - 1 (P, D, D), F_33 - 1 (P,)) at points x (P, D) of the reference shape; the second is u_r/R in axisymmetry, else 0."""
+    x = np.ascontiguousarray(x, dtype=reference.X.dtype)
+    P, D = x.shape
+    H, u = np.zeros((P, D, D)), np.zeros((P, D))
     mirror(reference.u, reference)
-    displacement_gradient(space, reference, out)
-    return out
+    sample(space, reference.u, x, u, H)
+    return H, u[:, 0] / x[:, 0] if isinstance(space, Axisymmetric) else np.zeros(P)
+
+
+def displacement_at(space, reference, x: np.ndarray) -> np.ndarray:
+    """u (P, D) at points x (P, D) of the reference shape."""
+    x = np.ascontiguousarray(x, dtype=reference.X.dtype)
+    u = np.zeros(x.shape)
+    mirror(reference.u, reference)
+    sample(space, reference.u, x, u, np.zeros((*x.shape, x.shape[1])))
+    return u
 
 
 @kernel
-def displacement_gradient(space, reference, out):
-    """Fill out (N, D, D) with sum u grad_X w."""
-    X, D = reference.X, reference.X.shape[1]
-    chunk, gradient = new_chunk(D, reference.f, True, False), Bspline()
-    for first in range(0, X.shape[0], CHUNK):
-        count = min(CHUNK, X.shape[0] - first)
-        lay_down(X, first, count, chunk.place)
-        gather(space, gradient, X, first, chunk, count, reference.u)
+def sample(space, nodes, x, value, gradient):
+    """A nodal vector field (n, columns(D)) at points x (P, D): value (P, D), gradient (P, D, D)."""
+    D = x.shape[1]
+    chunk, own = new_chunk(D, nodes, True, False), Bspline()
+    for first in range(0, x.shape[0], CHUNK):
+        count = min(CHUNK, x.shape[0] - first)
+        lay_down(x, first, count, chunk.place)
+        gather(space, own, x, first, chunk, count, nodes)
         for p in range(count):
             for c in range(D):
+                value[first + p, c] = chunk.v[c, p]
                 for d in range(D):
-                    out[first + p, c, d] = chunk.L[c, d, p]
+                    gradient[first + p, c, d] = chunk.L[c, d, p]
 
 
 def kinetic(reference) -> float:

@@ -20,6 +20,7 @@ from mpm.integrate.load import share
 from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
+from mpm.total.forces import act_on, average_volume
 from mpm.total.reference import fold, hold, mirror
 from mpm.total.strain import answer_all
 from mpm.transfer import CHUNK, Bspline, gather, lay_down, new_chunk, scatter
@@ -91,13 +92,16 @@ def force_all(space, body, reference, chunk, dt, report):
     for n in reference.touched:
         for c in range(f.shape[1]):
             f[n, c] = 0.0
+    average_volume(body.locking, space, body, reference, chunk)
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
         lay_down(X, first, count, chunk.place)
         gather(space, gradient, X, first, chunk, count, reference.u)
+        chunk.a[:] = 0.0
         squeeze = max(squeeze, answer_all(space, body, reference, chunk, first, count, dt, report))
         if report[CODE] != 0.0:
             return squeeze
+        act_on(body.source, body, chunk, first, count, dt, report)
         scatter(space, gradient, X, first, chunk, count, f, chunk.reach)
     fold(f, reference)
     return squeeze

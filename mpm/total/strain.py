@@ -17,6 +17,7 @@ from mpm.lanes import EIGHT, absolute, below, item, least, load8, maximum, minim
 from mpm.outcome import INVERTED, OVERSTRETCHED
 from mpm.state import Axisymmetric, Line, Plane, Volume
 from mpm.tensors import dilation2, dilation3, push1, push2, push3
+from mpm.total.forces import relax_volume, restore
 
 LEAST_J, MOST_J = 1e-3, 1e3
 FLAT = 1e-4  # smallest squared stretch that the limit of the step looks at
@@ -37,7 +38,7 @@ def begin(particles, reference, flowing, chunk, first, count, K):
     e, n = chunk.e, chunk.e.shape[1]
     for p in range(count):
         for k in range(K):
-            poke(e, k * n + p, peek(reference.plastic, K * (first + p) + k) if flowing else peek(chunk.none, p))
+            poke(e, k * n + p, peek(reference.plastic, K * (first + p) + k) if flowing else e.dtype.type(0))
         poke(e, JACOBIAN * n + p, peek(particles.J, first + p))
     rest(chunk, count, K)
 
@@ -103,6 +104,7 @@ def weigh(particles, chunk, first, count):
 @answer_all.register(Line)
 def _(space, body, reference, chunk, first, count, dt, report):
     particles, squeeze = body.particles, 1.0
+    relax_volume(body.locking, space, reference.X, first, chunk, count)
     for p in range(count):
         i, H = first + p, chunk.L[0, 0, p]
         before, J = particles.J[i], 1.0 + H
@@ -123,7 +125,10 @@ def _(space, body, reference, chunk, first, count, dt, report):
             reference.plastic[i, 1], reference.plastic[i, 2] = B[1], B[2]
         particles.B[i, 0], particles.B[i, 1], particles.B[i, 2] = B
         squeeze = max(squeeze, 1.0 / (J * J))
-        chunk.G[0, 0, p] = -particles.V0[i] * t1 / J
+        chunk.G[0, 0, p] = t1
+    restore(body.locking, chunk, count)
+    for p in range(count):
+        chunk.G[0, 0, p] *= -particles.V0[first + p] / (1.0 + chunk.L[0, 0, p])
     return squeeze
 
 
@@ -184,7 +189,9 @@ def plane_stress(body, reference, chunk, first, count):
 def _(space, body, reference, chunk, first, count, dt, report):
     for p in range(count):
         chunk.e[HOOP, p] = 0.0
+    relax_volume(body.locking, space, reference.X, first, chunk, count)
     squeeze = plane_strain(space, body, reference, chunk, first, count, dt, report)
+    restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
         react_plane(body.elastic, body, chunk, first, count, dt, report)
         plane_stress(body, reference, chunk, first, count)
@@ -196,7 +203,9 @@ def _(space, body, reference, chunk, first, count, dt, report):
     X, V0 = reference.X, body.particles.V0
     for p in range(count):
         chunk.e[HOOP, p] = chunk.v[0, p] / X[first + p, 0]
+    relax_volume(body.locking, space, reference.X, first, chunk, count)
     squeeze = plane_strain(space, body, reference, chunk, first, count, dt, report)
+    restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
         react_plane(body.elastic, body, chunk, first, count, dt, report)
         plane_stress(body, reference, chunk, first, count)
@@ -210,6 +219,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
     one, low, high, flat = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J)), splat8(real(FLAT))
     swell, good, squeeze = splat8(real(0)), one, one
+    relax_volume(body.locking, space, reference.X, first, chunk, count)
     begin(body.particles, reference, flows(body.flow), chunk, first, count, 6)
     for p in range(0, count, EIGHT):
         xx, xy, xz = load8(L, p), load8(L, n + p), load8(L, 2 * n + p)
@@ -231,6 +241,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
     admit(body.particles, chunk, first, count, swell, good, report)
     if flows(body.flow):
         keep_trial(chunk, count, 6)
+    restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
         react_volume(body.elastic, body, chunk, first, count, dt, report)
         volume_stress(body, reference, chunk, first, count)

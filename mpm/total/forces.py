@@ -1,0 +1,152 @@
+"""What acts on a body in the total frame beside its stress, and what averages its changes of volume: roles by the body's own objects.
+
+push     a source (mpm.sources): force m b(X, t) on w, heat r(X, t) to the particle                                    NoSource: nothing
+average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jiang & Choo 2022) on the weights of the reference shape:
+         J_i = sum w V0 J_p/sum w V0,  J- = sum w J_i,  with J- + own (J - J-) for J-:   stress of F- = (J-/J)^(1/D) F,  P = tau(F-) F^-T
+         In plane strain and axisymmetry the directions of the grid are scaled, the third is not.                        NoAverage: nothing
+"""
+
+import math
+
+from mpm.integrate.source import take_up
+from mpm.integrate.strain import HEATED
+from mpm.jit import role
+from mpm.sources import heat, push
+from mpm.state import Average, Axisymmetric, Line, NoAverage, NoSource, Plane, Source, Volume
+from mpm.tensors import dilation1, dilation2, dilation3
+from mpm.transfer import CHUNK, Bspline, gather, gather_scalar, lay_down, scatter_scalar
+
+
+@role(inline=True)
+def act_on(source, body, chunk, first, count, dt, report):
+    """After the stress: heat of the past step dt to the particles, forces of the present on to chunk.a."""
+    raise TypeError(f"no source {type(source).__name__}")
+
+
+@act_on.register(NoSource)
+def _(source, body, chunk, first, count, dt, report):
+    return None
+
+
+@act_on.register(Source)
+def _(source, body, chunk, first, count, dt, report):
+    particles = body.particles
+    for p in range(count):
+        i = first + p
+        if dt > 0.0:
+            report[HEATED] += particles.m[i] * take_up(body.thermal, i, dt * heat(source.law, source.X, i, source.t[i] + 0.5 * dt))
+            source.t[i] += dt
+        for c in range(particles.v.shape[1]):
+            chunk.a[c, p] += particles.m[i] * push(source.law, source.X, i, c, source.t[i])
+
+
+@role
+def swollen(space, X, i, chunk, p):
+    """J - 1 of particle i, which is p of the chunk, where displacement was gathered."""
+    raise TypeError(f"no volume change for {type(space).__name__}")
+
+
+@swollen.register(Line)
+def _(space, X, i, chunk, p):
+    return dilation1((chunk.L[0, 0, p],))
+
+
+@swollen.register(Plane)
+def _(space, X, i, chunk, p):
+    L = chunk.L
+    return dilation2((L[0, 0, p], L[0, 1, p], L[1, 0, p], L[1, 1, p], 0.0))
+
+
+@swollen.register(Axisymmetric)
+def _(space, X, i, chunk, p):
+    L = chunk.L
+    return dilation2((L[0, 0, p], L[0, 1, p], L[1, 0, p], L[1, 1, p], chunk.v[0, p] / X[i, 0]))
+
+
+@swollen.register(Volume)
+def _(space, X, i, chunk, p):
+    L = chunk.L
+    return dilation3((L[0, 0, p], L[0, 1, p], L[0, 2, p], L[1, 0, p], L[1, 1, p], L[1, 2, p], L[2, 0, p], L[2, 1, p], L[2, 2, p]))
+
+
+@role
+def average_volume(locking, space, body, reference, chunk):
+    """Nodal averages of the present changes of volume."""
+    raise TypeError(f"no averaging by {type(locking).__name__}")
+
+
+@average_volume.register(NoAverage)
+def _(locking, space, body, reference, chunk):
+    return None
+
+
+@average_volume.register(Average)
+def _(locking, space, body, reference, chunk):
+    X, V0, total, gradient, D = reference.X, body.particles.V0, locking.change, Bspline(), reference.X.shape[1]
+    for n in reference.touched:
+        total[n] = 0.0
+    value, zero = chunk.f[0], chunk.S[0]
+    for first in range(0, X.shape[0], CHUNK):
+        count = min(CHUNK, X.shape[0] - first)
+        lay_down(X, first, count, chunk.place)
+        gather(space, gradient, X, first, chunk, count, reference.u)
+        for p in range(count):
+            value[p] = V0[first + p] * swollen(space, X, first + p, chunk, p)
+            for k in range(D):
+                zero[k, p] = 0.0
+        scatter_scalar(space, X, first, count, value, zero, zero, total)
+    ghost, image = reference.ghost, reference.image
+    for k in range(len(ghost)):
+        total[image[k]] += total[ghost[k]]
+    for n in reference.active:
+        total[n] /= locking.volume[n]
+    for k in range(len(ghost) - 1, -1, -1):
+        total[ghost[k]] = total[image[k]]
+
+
+@role
+def relax_volume(locking, space, X, first, chunk, count):
+    """F- for F in chunk.L; what it was multiplied with, less one, to chunk.none."""
+    raise TypeError(f"no averaging by {type(locking).__name__}")
+
+
+@relax_volume.register(NoAverage)
+def _(locking, space, X, first, chunk, count):
+    return None
+
+
+@relax_volume.register(Average)
+def _(locking, space, X, first, chunk, count):
+    D, at, unused = X.shape[1], chunk.f[0], chunk.S[0]
+    gather_scalar(space, X, first, count, locking.change, at, unused, unused)
+    for p in range(count):
+        alone = swollen(space, X, first + p, chunk, p)
+        stretch = math.expm1((math.log1p(at[p] + locking.own * (alone - at[p])) - math.log1p(alone)) / D)
+        chunk.none[p] = stretch
+        for c in range(D):
+            for d in range(D):
+                chunk.L[c, d, p] += stretch * chunk.L[c, d, p]
+            chunk.L[c, c, p] += stretch
+
+
+@role
+def restore(locking, chunk, count):
+    """F again in chunk.L."""
+    raise TypeError(f"no averaging by {type(locking).__name__}")
+
+
+@restore.register(NoAverage)
+def _(locking, chunk, count):
+    return None
+
+
+@restore.register(Average)
+def _(locking, chunk, count):
+    D = chunk.a.shape[0]
+    for p in range(count):
+        stretch = chunk.none[p]
+        for c in range(D):
+            chunk.L[c, c, p] -= stretch
+            for d in range(D):
+                chunk.L[c, d, p] /= 1.0 + stretch
+        chunk.none[p] = 0.0
