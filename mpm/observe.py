@@ -18,6 +18,7 @@ from mpm.memory import rows
 from mpm.outcome import Outcome
 from mpm.state import PAD, Axisymmetric, Run, Thermal
 from mpm.total import reference as moving
+from mpm.total.heat import Warmth
 
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
@@ -182,7 +183,7 @@ class Recorder:
         yield "temperature_min", np.min(theta)
         yield "temperature_max", np.max(theta)
         yield "heat_total", total
-        yield "area_exchanging", sum(exchanging_area(body) for body in self.warm)
+        yield "area_exchanging", self.exchanging()
         yield "heat_exchanged", clock.exchanged
         yield "heat_ledger", total - clock.exchanged - clock.local
         yield "energy_ledger", total - clock.exchanged - clock.local - self.gone
@@ -193,6 +194,11 @@ class Recorder:
             error = theta - scene.watch.exact(np.concatenate(self.origin), clock.time)
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
             yield "error_max", np.max(np.abs(error))
+
+    def exchanging(self) -> float:
+        """Area that exchanges heat."""
+        skins = [reference.warmth.now for reference in self.scene.references if isinstance(reference.warmth, Warmth)]
+        return float(sum(map(np.sum, skins))) if self.scene.references else sum(exchanging_area(body) for body in self.warm)
 
     def run(self, scene, clock, result: Outcome, wall_time: float) -> Run:
         """The Run. Where it did not complete, the series stop at the last good record."""

@@ -28,7 +28,7 @@ PEERS = {
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
-    "integrate": {"diagnostics"}, "total": {"integrate"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
+    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"},
 }  # fmt: skip

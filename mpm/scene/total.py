@@ -21,7 +21,7 @@ from mpm.total.reference import Reference, new_nodes
 from mpm.total.step import courant_of
 
 NEAR = 1.5  # cells: what is nearer to a wall shares nodes with its mirror
-FACING = 0.1  # of a unit normal
+FACING = 0.5  # of a unit normal
 FLUSH = 1e-9  # of the domain
 
 

@@ -11,6 +11,8 @@ from mpm.total.heat import begin_heat, warm
 from mpm.total.reference import project, show
 from mpm.total.step import advance_total
 
+PACE = 4.0  # times the updated frame's: here nothing damps by the step. manufactured_1d, cell 1/32: error of temperature 1.68e-4 at one, 1.72e-4 at four
+
 
 def begin(space, body, reference) -> None:
     """Nodes from what the particles of a body are given at the start."""
@@ -53,9 +55,9 @@ def advance_references(scene, clock, buffers, dt: float, steps: int) -> None:
 
 
 def present_limits(scene, clock) -> Limits:
-    """Limits of the present state. In the total frame the elastic wave alone limits the mechanical step, and that may be longer."""
+    """Limits of the present state. In the total frame the elastic wave alone limits the mechanical step, and both steps may be longer."""
     found = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     if not scene.references:
         return found
     longer = min(reference.courant for reference in scene.references) / WAVE
-    return replace(found, mechanical={"elastic wave": longer * found.mechanical["elastic wave"]})
+    return replace(found, mechanical={"elastic wave": longer * found.mechanical["elastic wave"]}, pace=PACE * found.pace)
