@@ -8,7 +8,7 @@ import pytest
 
 import mpm
 import mpm.simulation as simulation
-from mpm.guards import NOISE, ROUNDING, SLOPES, Guards, holes, stagger
+from mpm.guards import GROWTH, NOISE, ROUNDING, SLOPES, Data, Guards, holes, stagger
 
 DT = 0.01
 FIELDS = {"temperature": "theta", "gradient of temperature": "c", "J": "J", "strain": "B", "affine velocity": "C", "velocity": "v", "position": "x"}
@@ -262,3 +262,33 @@ def test_guards_cost_less_than_a_hundredth(core, monkeypatch):
         shares.append((parts["in Python"] + parts["opening"]) / parts["run"])
         print(f"share of guards {shares[-1]:.4f}, {blocks[0]} blocks,", {name: f"{1e3 * value:.3f} ms" for name, value in parts.items()})
     assert min(shares) < 0.01, shares
+
+
+@pytest.mark.parametrize("allowed", [SLOPES, NOISE])
+def test_temperatures_are_judged_at_just_the_share_that_is_allowed(core, allowed):
+    from mpm.scene.build import build
+
+    body = build(core.experiment(1, drop=("surfaces",))).bodies[0]
+    body.thermal.theta[:] = np.linspace(0.0, 100.0, len(body.thermal.theta))
+    data = Data(body, None, allowed)
+    data.heats = False
+    for share, fine in ((allowed - 0.01, True), (allowed + 0.01, False)):
+        for beyond in (100.0 * (1 + share), -100.0 * share):
+            theta = body.thermal.theta.copy()
+            body.thermal.theta[3] = beyond
+            assert (data.judge(body) is None) == fine
+            body.thermal.theta[:] = theta
+
+
+def test_energy_is_judged_at_just_the_share_that_is_allowed(core):
+    from mpm.scene.build import build
+    from mpm.simulation import Clock
+
+    scene = build(core.experiment(1, drop=("surfaces",)))
+    for gained, kind in ((GROWTH - 0.01, "completed"), (GROWTH + 0.01, "energy_growth")):
+        guards, clock = Guards(scene), Clock(scene)
+        guards.judged, series = True, {"energy_kinetic": [1.0], "energy_elastic": [0.0], "energy_total": [1.0]}
+        assert guards.frame(scene, clock, series).ok
+        series["energy_total"].append(1.0 + gained)
+        series["energy_kinetic"].append(1.0), series["energy_elastic"].append(0.0)
+        assert guards.frame(scene, clock, series).kind == kind

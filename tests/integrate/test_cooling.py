@@ -58,6 +58,17 @@ def test_a_thin_body_cools_exponentially(core, dimension):
     assert (run.series["temperature_mean"][-1] - core.COLD) / 100 == pytest.approx(expected, rel=2e-3)
 
 
+def test_a_thin_body_follows_air_that_warms_within_a_heat_step(core):
+    """T' = -k (T - To - r t): air that is held where a heat step begins would lag by half of a step of 2 s, 3 K at the end here."""
+    r, k = 20.0, 0.02 * 2 / 0.75 / (2.0 * 1.5)
+    rising = {"table": {"time": [0.0, 20.0], "value": [core.COLD, core.COLD + 20 * r]}}
+    changes = {"kappa": 4.0, "method.heat_step": 2.0, "method.heat": {"implicit": {"order": 2}}}
+    run = core.play(core.experiment(1, changes, surfaces=air(core, 0.02, rising), time={"end": 10.0}, output={"every": 5.0}))[1]
+    expected = core.COLD + 10 * r - r / k + (core.HOT - core.COLD + r / k) * math.exp(-10 * k)
+    assert run.series["temperature_mean"][-1] == pytest.approx(expected, abs=0.5)
+    closes(run)
+
+
 def test_a_cold_body_in_hot_air_warms(core):
     run = core.play(core.experiment(1, surfaces=air(core, outside=500.0)))[1]
     assert np.all(np.diff(run.series["temperature_mean"]) > 0) and run.series["heat_total"][-1] > 0

@@ -111,3 +111,21 @@ def test_a_squeezed_body_stays_stable(core):
     assert run.outcome.ok
     energy = run.series["energy_kinetic"] + run.series["energy_elastic"]
     assert energy.max() < 1.05 * energy[0]
+
+
+def test_radiation_limits_the_step_by_its_slope(core):
+    """d(sigma e T^4)/dT = 4 sigma e T^3 at the hottest of body and sky, beside beta."""
+    hottest = max(core.HOT, 350.0)
+    slope = 4 * 5.670374419e-8 * 0.9 * hottest**3
+    sky = [{"of": "body", "side": "left", "radiation": {"emissivity": 0.9, "surroundings": 350.0}}]
+    air = [{"of": "body", "side": "left", "convection": {"beta": slope, "outside": 350.0}}]
+    both = [limits(scene.space, 1, scene.bodies, np.zeros((1, REPORT))).heat["surface exchange"] for scene in (begun(core, sky), begun(core, air))]
+    assert both[0] == pytest.approx(both[1], rel=1e-3)
+
+
+def begun(core, surfaces):
+    """A scene whose surroundings are written, as before its first heat step."""
+    scene = build(core.experiment(1, surfaces=surfaces))
+    for body, around in zip(scene.bodies, scene.surroundings, strict=True):
+        around.write(scene.space, body, 0.0, 1e-3)
+    return scene

@@ -92,3 +92,18 @@ def test_a_failing_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch,
     assert caught.value.filename == str(path) and caught.value.errno == errno.ENOSPC
     monkeypatch.undo()
     assert path.read_bytes() == b"old" and os.listdir(tmp_path) == ["p.nc"]
+
+
+def test_a_file_is_durable_before_it_has_its_name_and_the_name_before_it_is_told(tmp_path, monkeypatch):
+    """fsync of the data, then the rename, then fsync of the folder: a crash in between leaves the old file or the new one."""
+    happened = []
+    sync, replace = os.fsync, os.replace
+
+    def noted(descriptor):
+        happened.append("folder" if os.path.samestat(os.fstat(descriptor), os.stat(tmp_path)) else "data")
+        sync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", noted)
+    monkeypatch.setattr(os, "replace", lambda *names: (happened.append("rename"), replace(*names)))
+    write_whole(tmp_path / "a.nc", b"whole")
+    assert happened == ["data", "rename", "folder"]

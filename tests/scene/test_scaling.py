@@ -65,3 +65,17 @@ def test_only_where_there_is_inertia(core):
     data["materials"]["solid"] = {"density": 1.0, "heat": data["materials"]["solid"]["heat"]}
     with pytest.raises(ConfigError, match="nothing here has inertia"):
         mpm.load(data)
+
+
+def test_energies_of_motion_leave_the_run_by_the_square_of_the_scale(core):
+    """Velocities are S times too large on the fast clock, so kinetic energy is S^2 times: in the total as in its part."""
+    from mpm.outcome import COMPLETED, outcome
+    from mpm.scene.scaling import physical
+    from mpm.state import Run
+
+    series = {"energy_kinetic": np.array([50.0, 75.0]), "energy_elastic": np.array([1.0, 2.0]), "dissipation_total": np.zeros(2)}
+    series |= {"energy_total": series["energy_kinetic"] + series["energy_elastic"], "velocity_max": np.array([5.0, 5.0])}
+    run = Run(outcome(COMPLETED), np.array([0.0, 1.0]), series, {}, steps=1, wall_time=0.0, facts={"warnings": []})
+    after = physical(run, mpm.load(core.config(1, time={"end": 5.0, "scale": 5.0}, surfaces=[])))
+    assert after.series["energy_kinetic"] == pytest.approx([2.0, 3.0]) and after.series["energy_total"] == pytest.approx([3.0, 5.0])
+    assert after.series["velocity_max"] == pytest.approx([1.0, 1.0]) and after.times == pytest.approx([0.0, 5.0])

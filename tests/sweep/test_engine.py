@@ -317,3 +317,9 @@ def test_two_sweeps_on_one_folder(config, tmp_path, marks):
     process.kill()
     process.communicate(timeout=20)
     assert go(config([0.2]), tmp_path / "out").exit_code == 0
+
+
+def test_a_point_that_dies_is_tried_four_times_in_all_unless_told(config, tmp_path, marks):
+    result = go(config([fake.DIES, 0.2]), tmp_path / "out", jobs=1)
+    assert result.counts["killed"] == 1 and len([row for row in marks() if row[1] == str(fake.DIES)]) == 4
+    assert tree_of(tmp_path / "out" / "sweep.nc").attempts.values.tolist()[0] == 4

@@ -87,3 +87,12 @@ def test_particles_are_counted_about(shape, volume):
         rim = 0.0 if shape else 60 * cell / 2  # cells that a ball's surface cuts
         assert volume * (1 - 1e-9) <= count * (cell / 2) ** 3 <= volume * (1 + 1e-9 + rim)
         assert memory(experiment) <= memory_at_most(experiment)
+
+
+def test_the_dataset_that_will_be_written_anew_counts_as_wanted(tmp_path, monkeypatch):
+    experiment = load(CUBE)
+    (tmp_path / "sweep.nc").write_bytes(b"0" * 5000)
+    needed = room.SPARE + 3 * room.output(experiment) + 5000
+    for free, fits in ((needed, True), (needed - 1, False)):
+        monkeypatch.setattr(room, "free_disk", lambda folder, free=free: free)
+        assert (Room(tmp_path, None, far=False).short(3, experiment) == "") == fits

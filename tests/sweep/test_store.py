@@ -107,3 +107,13 @@ def test_a_damaged_description_is_refused_in_words(tmp_path):
     (tmp_path / "experiment.json").write_text('{"format": 1, ')
     with pytest.raises(Refused, match="damaged"):
         Store(tmp_path).experiment()
+
+
+def test_a_new_folder_is_durable_before_what_is_in_it(tmp_path, monkeypatch):
+    from mpm.sweep import store as module
+
+    synced = []
+    monkeypatch.setattr(module, "sync_folder", synced.append)
+    place = tmp_path / "out" / "points" / "a.h5"
+    Store(tmp_path / "out").put(place, b"whole")
+    assert place.read_bytes() == b"whole" and set(synced) == {tmp_path, tmp_path / "out"}
