@@ -26,6 +26,7 @@ BYTES_PROCESS = {"point": 195_000_000, "moving": 205_000_000, "rigid": 222_000_0
 
 MOST_UNKNOWNS = 2_000_000
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
+LOOKED = 50_000  # particles of a scene that are all made to see its limits
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
@@ -66,7 +67,7 @@ def memory_at_most(experiment) -> int:
 
 
 def count_particles(experiment) -> int:
-    """Particles of all bodies, about: cells of the sampling whose centre lies in a body or within half a cell of it."""
+    """Particles of all bodies, about: cells of the sampling, some of them, whose centre lies in a body or within half a cell of it."""
     import numpy as np
 
     from mpm.scene.shapes import shape
@@ -75,14 +76,14 @@ def count_particles(experiment) -> int:
         return 0
     edge, count = experiment.grid.cell / experiment.method.particles, 0.0
     for body in experiment.bodies.values():
-        outline = shape(body.shape, experiment.grid.dimension)
+        outline = shape(body.shape, experiment.grid.dimension).moved(np.array(experiment.method.offset) * experiment.grid.cell)
         lower, upper = outline.bounds()
-        lower = np.maximum(lower, 0.0)
-        sides = np.maximum(1, np.rint((upper - lower) / edge)).astype(int)
-        coarse = np.minimum(sides, round(LATTICE ** (1 / len(sides))))
-        places = np.meshgrid(*(low + (np.arange(n) + 0.5) * (high - low) / n for low, high, n in zip(lower, upper, coarse, strict=True)), indexing="ij")
-        inside = outline.distance(np.stack([axis.ravel() for axis in places], axis=1)) < edge / 2
-        count += float(np.mean(inside)) * math.prod(map(int, sides))
+        first, last = np.floor(np.maximum(lower, 0.0) / edge + 1e-9), np.ceil(upper / edge - 1e-9)  # as in mpm.scene.build.sample
+        sides = np.maximum(1, last - first)
+        some = np.minimum(sides, round(LATTICE ** (1 / len(sides)))).astype(int)
+        places = np.meshgrid(*(low + np.floor((np.arange(n) + 0.5) * side / n) + 0.5 for low, side, n in zip(first, sides, some, strict=True)), indexing="ij")
+        inside = outline.distance(edge * np.stack([axis.ravel() for axis in places], axis=1)) < edge / 2
+        count += float(np.mean(inside)) * math.prod(sides.tolist())
     return round(count)
 
 
@@ -105,15 +106,20 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
 
 
 def estimate_moving(experiment) -> dict:
-    """Particles are sampled (not run) for the counts and the limits of the first step."""
+    """Particles are sampled (not run) for the limits of the first step: LOOKED of each body at most, as the limits do not depend on how many there are.
+
+    But the fastest particle of a body that turns: it lies up to half a larger cell nearer to the axis.
+    """
     from mpm.boundary import extents
     from mpm.integrate.timestep import limits
     from mpm.scene.build import build
     from mpm.simulation import Clock
 
-    scene = build(experiment)
+    particles = count_particles(experiment)
+    scene = build(experiment, most=math.inf if particles <= LOOKED else LOOKED)
     now = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports)
-    particles = sum(len(body.particles.m) for body in scene.bodies)
+    if particles <= LOOKED:
+        particles = sum(len(body.particles.m) for body in scene.bodies)
     S = experiment.time.scale
     step = (scene.step or now.step() * scene.safety) * S
     pace = min((scene.heat_step or now.pace) * S, experiment.time.end)

@@ -70,8 +70,8 @@ def grid_space(experiment):
     return kind(grid.cell, *nodes, BASES[grid.basis]())
 
 
-def sample(experiment, body):
-    """Cut cells of a body in the grid's coordinates, the edges of the particle cells, and its outline (mpm.scene.outline)."""
+def sample(experiment, body, most: float = math.inf):
+    """Cut cells of a body in the grid's coordinates, larger ones where they would be more than `most`; the edges of these cells; its outline (mpm.scene.outline)."""
     grid, method = experiment.grid, experiment.method
     outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
@@ -80,6 +80,7 @@ def sample(experiment, body):
             raise SceneError("method.offset shifts an axisymmetric body that moves off its axis: only its second number may differ from 0")
         lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
     edge = grid.cell / method.particles
+    edge *= max(1, math.ceil((math.prod((upper - lower) / edge) / most) ** (1 / len(lower))))
     for low, high, size in zip(lower, upper, grid.size, strict=True):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
             raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
@@ -120,11 +121,11 @@ def expansion_law(model, elastic, theta: np.ndarray, zero: float):
     return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)
 
 
-def moving_body(experiment, name: str, zero: float, space):
+def moving_body(experiment, name: str, zero: float, space, most: float = math.inf):
     """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut, edges, outline = sample(experiment, config)
+    cut, edges, outline = sample(experiment, config, most)
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -200,8 +201,8 @@ def wall_kinds(experiment) -> np.ndarray:
     return kinds
 
 
-def build(experiment, exact=None) -> Scene:
-    """The scene of one point. SceneError where no method here can run it."""
+def build(experiment, exact=None, most: float = math.inf) -> Scene:
+    """The scene of one point, its bodies of at most about `most` particles each: fewer to look at, not to run. SceneError where no method can run it."""
     names = tuple(experiment.bodies)
     rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
     if rigid:
@@ -217,7 +218,7 @@ def build(experiment, exact=None) -> Scene:
         seams = (None,) * len(names)
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
-        bodies, surroundings, seams, outlines = zip(*(moving_body(experiment, name, zero, space) for name in names), strict=True)
+        bodies, surroundings, seams, outlines = zip(*(moving_body(experiment, name, zero, space, most) for name in names), strict=True)
         refuse_idle(experiment, seams)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
