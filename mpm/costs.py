@@ -18,10 +18,8 @@ ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, wh
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
 RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
 SHOWN = 20e-6  # s an output of rigid bodies
-BYTES_PARTICLE = {1: 200, 2: 376, "axisymmetric": 390, 3: 754}  # at the peak, which is where particles are cut and weighed
-BYTES_NODE = 30
-BYTES_LATER = 203_000_000  # of a moving process once its kernels are loaded, when particles take the most
-BYTES_PROCESS = {"point": 195_000_000, "moving": 205_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
+COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
+BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
 
 
 MOST_UNKNOWNS = 2_000_000
@@ -31,7 +29,7 @@ STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
 def estimate(experiment) -> dict:
-    """particles, unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
+    """particles (more than LOOKED to three digits), unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
     if experiment.grid.dimension == 0:
         from mpm.scene import point
 
@@ -43,12 +41,29 @@ def memory(experiment) -> int:
     """Bytes of a process that runs the point, at its peak, kernels in the cache: within 20 % (tests/faults/test_memory.py). Particles are counted, not made."""
     if experiment.grid.dimension == 0:
         return BYTES_PROCESS["point"]
-    particles = count_particles(experiment)
+    particles, nodes = counted(experiment)
     fields = 3 * output_bytes(experiment, particles)  # as they are collected, joined and packed
     if not experiment.moving:
         return estimate_rigid(experiment)["memory_bytes"] + fields
-    nodes = math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)
-    return max(BYTES_PROCESS["moving"], BYTES_LATER + particles * BYTES_PARTICLE[experiment.grid.dimension] + nodes * BYTES_NODE) + fields
+    return BYTES_PROCESS["moving"] + particles * bytes_particle(experiment) + nodes * bytes_node(experiment) + fields
+
+
+def bytes_particle(experiment) -> int:
+    """At the peak of a run, which is where motion is summed up (mpm.observe): the state, and in double precision x, v, m, J, V0, squares of v and C."""
+    D, real = experiment.grid.directions, 4 if experiment.method.precision == "float32" else 8
+    state = real * (2 * D + D * D + COMPONENTS[D] + 3)  # x, v, C, B, J, m, V0
+    if any(material.heat is not None for material in experiment.materials.values()):
+        state += real * (1 + D) + 8  # theta and its gradient; theta at the start
+    if experiment.loads:
+        state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
+    return state + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
+
+
+def bytes_node(experiment) -> int:
+    """Of the nodes that bodies reach: two buffers of momentum and mass, and the fields of a heat step."""
+    real = 4 if experiment.method.precision == "float32" else 8
+    warm = any(material.heat is not None for material in experiment.materials.values())
+    return 2 * 4 * real + (7 * 8 if warm else 0)
 
 
 def memory_at_most(experiment) -> int:
@@ -59,7 +74,7 @@ def memory_at_most(experiment) -> int:
     cells = [math.ceil(size / grid.cell) + 5 for size in grid.size]
     if experiment.moving:
         count = math.prod(cells) * experiment.method.particles**grid.directions
-        body = BYTES_PROCESS["moving"] + len(experiment.bodies) * count * BYTES_PARTICLE[grid.dimension] + math.prod(cells) * BYTES_NODE
+        body = BYTES_PROCESS["moving"] + len(experiment.bodies) * count * bytes_particle(experiment) + math.prod(cells) * bytes_node(experiment)
     else:
         count = math.prod(cells)
         body = BYTES_PROCESS["rigid"] + 8 * count * (3 * count // max(cells) + 5**grid.directions * 6)  # matrices, and a band of the smaller sides
@@ -67,14 +82,23 @@ def memory_at_most(experiment) -> int:
 
 
 def count_particles(experiment) -> int:
-    """Particles of all bodies, about: cells of the sampling, some of them, whose centre lies in a body or within half a cell of it."""
+    """Particles of all bodies, about."""
+    return counted(experiment)[0]
+
+
+def counted(experiment) -> tuple[int, int]:
+    """About how many particles all bodies have, and how many nodes they reach.
+
+    Particles: cells of the sampling, LATTICE of them a body, whose centre lies in it or within half a cell of it. Nodes: twice those of the boxes
+    round the bodies, as they move, at most all.
+    """
     import numpy as np
 
     from mpm.scene.shapes import shape
 
     if not experiment.moving:
-        return 0
-    edge, count = experiment.grid.cell / experiment.method.particles, 0.0
+        return 0, 0
+    edge, particles, nodes = experiment.grid.cell / experiment.method.particles, 0.0, 0.0
     for body in experiment.bodies.values():
         outline = shape(body.shape, experiment.grid.dimension).moved(np.array(experiment.method.offset) * experiment.grid.cell)
         lower, upper = outline.bounds()
@@ -83,8 +107,9 @@ def count_particles(experiment) -> int:
         some = np.minimum(sides, round(LATTICE ** (1 / len(sides)))).astype(int)
         places = np.meshgrid(*(low + np.floor((np.arange(n) + 0.5) * side / n) + 0.5 for low, side, n in zip(first, sides, some, strict=True)), indexing="ij")
         inside = outline.distance(edge * np.stack([axis.ravel() for axis in places], axis=1)) < edge / 2
-        count += float(np.mean(inside)) * math.prod(sides.tolist())
-    return round(count)
+        particles += float(np.mean(inside)) * math.prod(sides.tolist())
+        nodes += 2 * math.prod((sides / experiment.method.particles + 3).tolist())
+    return round(particles), round(min(nodes, math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)))
 
 
 def outputs(experiment) -> int:
@@ -118,8 +143,7 @@ def estimate_moving(experiment) -> dict:
     particles = count_particles(experiment)
     scene = build(experiment, most=math.inf if particles <= LOOKED else LOOKED)
     now = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports)
-    if particles <= LOOKED:
-        particles = sum(len(body.particles.m) for body in scene.bodies)
+    particles = sum(len(body.particles.m) for body in scene.bodies) if particles <= LOOKED else int(float(f"{particles:.3g}"))
     S = experiment.time.scale
     step = (scene.step or now.step() * scene.safety) * S
     pace = min((scene.heat_step or now.pace) * S, experiment.time.end)

@@ -18,6 +18,17 @@ def test_more_costs_more():
     assert seconds("scenes/slump", {"materials.dough.flow.ellipse.map": "clipped"}) > seconds("scenes/slump", {})
 
 
+@pytest.mark.parametrize("name", ["cube", "slump", "loaf_oven_spring", "chocolate_pour", "dough_creep"])
+def test_few_particles_have_the_limits_of_all(name, monkeypatch):
+    """What is said of a large scene is seen on a part of its particles: the limits are the same, and the counts nearly."""
+    experiment = mpm.load(CONFIGS / "scenes" / f"{name}.yaml")
+    every = estimate(experiment)
+    monkeypatch.setattr("mpm.costs.LOOKED", 60)
+    few = estimate(experiment)
+    assert few["limits"] == pytest.approx(every["limits"], rel=1e-9) and few["binds"] == every["binds"] and few["steps"] == every["steps"]
+    assert few["particles"] == pytest.approx(every["particles"], rel=0.05) and few["memory_bytes"] == every["memory_bytes"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "changes"), SCENES)
 def test_within_a_factor_of_two(name, changes):
