@@ -29,7 +29,7 @@ STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
 def estimate(experiment) -> dict:
-    """particles (more than LOOKED to three digits), unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
+    """particles (of many, three digits), unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
     if experiment.grid.dimension == 0:
         from mpm.scene import point
 

@@ -24,8 +24,8 @@ ALIGN = 64
 
 
 def pack(memory: Any, line: dict) -> bytes:
-    """The bytes of a checkpoint."""
-    parts: list[bytes] = []
+    """The bytes of a checkpoint: the one copy that is made of the memory."""
+    parts: list[Any] = []
     size = 0
 
     def plain(value: Any) -> Any:
@@ -40,12 +40,12 @@ def pack(memory: Any, line: dict) -> bytes:
         if array.dtype.kind not in "biuf":
             raise TypeError(f"a memory of {array.dtype} arrays cannot be kept")
         place = {"#": [size, array.dtype.str, list(array.shape)]}
-        parts.extend((array.tobytes(), bytes(-array.nbytes % ALIGN)))
+        parts.extend((np.ascontiguousarray(array).reshape(-1).view(np.uint8), bytes(-array.nbytes % ALIGN)))
         size += array.nbytes + -array.nbytes % ALIGN
         return place
 
     told = plain(memory)
-    return seal(b"".join(parts), line | {"memory": told})
+    return seal(parts, line | {"memory": told})
 
 
 def unpack(data: bytes, path: Path | str = "") -> tuple[Any, dict]:

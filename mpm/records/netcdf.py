@@ -126,10 +126,11 @@ def put(group: Any, name: str, variable: Array, lengths: dict[str, int]) -> None
         target.attrs[key] = attribute(value)
 
 
-def seal(body: bytes, line: dict) -> bytes:
-    """`body`, one line of JSON, and the digest of both."""
+def seal(body: bytes | list, line: dict) -> bytes:
+    """`body` (or its parts, which are copied once), one line of JSON, and the digest of both."""
     text = json.dumps(line, ensure_ascii=False).encode(errors="backslashreplace")  # halves of pairs, which JSON writes so too
-    return b"".join([body, text, closing(text, body, text)])
+    parts = body if isinstance(body, list) else [body]
+    return b"".join([*parts, text, closing(text, *parts, text)])
 
 
 def closing(text: bytes, *parts: bytes | memoryview) -> bytes:

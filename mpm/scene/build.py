@@ -80,10 +80,10 @@ def sample(experiment, body, most: float = math.inf):
             raise SceneError("method.offset shifts an axisymmetric body that moves off its axis: only its second number may differ from 0")
         lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
     edge = grid.cell / method.particles
-    edge *= max(1, math.ceil((math.prod((upper - lower) / edge) / most) ** (1 / len(lower))))
     for low, high, size in zip(lower, upper, grid.size, strict=True):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
             raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
+    edge *= max(1, math.ceil((math.prod((upper - lower) / edge) / most) ** (1 / len(lower))))
     edges = [np.arange(math.floor(low / edge + 1e-9), math.ceil(high / edge - 1e-9) + 1) * edge for low, high in zip(lower, upper, strict=True)]
     radial = grid.dimension == "axisymmetric"
     cut = by_nodes(cells(outline, edges, radial), grid.cell)

@@ -95,7 +95,9 @@ print(json.dumps([found["particles"], found["memory_bytes"], peak()]))
 def test_to_plan_a_large_body_takes_little_memory():
     """A ball of 825 000 particles, 0.5 GB of a run: the process that plans it is as small as with a ball of 13 000."""
     said = [solid(3, cells, SHAPES["ball"][2]) for cells in (16, 64)]
-    small, large = (json.loads(subprocess.run([sys.executable, "-c", LOOK, json.dumps(one)], capture_output=True, text=True, check=True).stdout) for one in said)
+    small, large = (
+        json.loads(subprocess.run([sys.executable, "-c", LOOK, json.dumps(one)], capture_output=True, text=True, check=True).stdout) for one in said
+    )
     assert large[0] == pytest.approx(4 / 3 * 3.14159265 * 0.45**3 * 128**3, rel=0.05) and large[1] > 4e8 and large[2] < small[2] + 4e7
 
 
