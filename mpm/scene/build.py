@@ -71,7 +71,7 @@ def grid_space(experiment):
 
 
 def sample(experiment, body, most: float = math.inf):
-    """Cut cells of a body in the grid's coordinates, larger ones where they would be more than `most`; the edges of these cells; its outline (mpm.scene.outline)."""
+    """Cut cells of a body in the grid's coordinates, larger where they would be more than `most`; their edges; the outline (mpm.scene.outline)."""
     grid, method = experiment.grid, experiment.method
     outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()

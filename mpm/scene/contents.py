@@ -130,26 +130,29 @@ def stacked(base: Contents, upright: Contents, layers: int) -> Contents:
     return Contents(*cells, *(np.concatenate(pair) for pair in zip(lateral, caps, strict=True)))
 
 
-def nearest(index: np.ndarray, x: np.ndarray, known: np.ndarray, edges) -> np.ndarray:
-    """Numbers (K,) among the rising cells `known` of the one whose middle is nearest to each x (K, d), in the cell `index` (d, K); the first of equals."""
+def nearest(index: np.ndarray, x: np.ndarray, known: np.ndarray, edges, places: np.ndarray | None = None) -> np.ndarray:
+    """Numbers (K,) among the rising cells `known` of the one nearest to each x (K, d), in the cell `index` (d, K); the first of equals.
+
+    A cell is where its middle is, or at `places`, within it.
+    """
     shape, d = [len(e) - 1 for e in edges], len(edges)
     around = index[:, :, None] + np.indices([3] * d).reshape(d, 1, -1) - 1
     within = np.all((around >= 0) & (around < np.reshape(shape, (d, 1, 1))), axis=0)
     cell = np.ravel_multi_index(around, shape, mode="clip")
     at = np.minimum(np.searchsorted(known, cell), len(known) - 1)
-    away = ((centres(np.unravel_index(cell, shape), edges) - x[:, None]) ** 2).sum(-1)
+    away = (((centres(np.unravel_index(cell, shape), edges) if places is None else places[at]) - x[:, None]) ** 2).sum(-1)
     away[~(within & (known[at] == cell))] = np.inf
-    best = np.argmin(away, axis=1)
-    found = at[np.arange(len(x)), best]
+    found = at[np.arange(len(x)), np.argmin(away, axis=1)]
     beyond = np.full(len(x), np.inf)  # how near what lies outside these 3^d cells may be
     for k, e in enumerate(edges):
-        middle = np.concatenate([[-np.inf] * 2, (e[:-1] + e[1:]) / 2, [np.inf] * 2])
-        beyond = np.minimum(beyond, np.minimum(x[:, k] - middle[index[k]], middle[index[k] + 4] - x[:, k]) ** 2)
+        low, high = ((e[:-1] + e[1:]) / 2,) * 2 if places is None else (e[1:], e[:-1])
+        low, high = (np.concatenate([[-np.inf] * 2, bound, [np.inf] * 2]) for bound in (low, high))
+        beyond = np.minimum(beyond, np.minimum(x[:, k] - low[index[k]], high[index[k] + 4] - x[:, k]) ** 2)
     far = np.flatnonzero(away.min(axis=1) >= beyond)
     if len(far):
         from scipy.spatial import cKDTree  # rare: a needle's point, a sheet thinner than LEAST
 
-        found[far] = cKDTree(centres(np.unravel_index(known, shape), edges)).query(x[far])[1]
+        found[far] = cKDTree(centres(np.unravel_index(known, shape), edges) if places is None else places).query(x[far])[1]
     return found
 
 

@@ -11,6 +11,7 @@ import itertools
 import numpy as np
 
 from mpm.follow import Carried, carried
+from mpm.scene.contents import nearest
 from mpm.scene.cut import Segment
 from mpm.scene.shapes import Ball, Box, Cylinder, Shape, shape
 
@@ -21,10 +22,17 @@ def outline_of(outline: Shape, cut, edges, radial: bool) -> Carried:
     """Points on the surface of one body. outline: its shape in the grid's coordinates; cut, edges: its particles (mpm.scene.build.sample)."""
     sharp = ridges(outline, edges[0][1] - edges[0][0])
     sharp = sharp[sharp[:, 0] >= 0] if radial else sharp  # the other half is the same material
-    owner = np.array([np.argmin(np.sum((cut.centroid - x) ** 2, axis=1)) for x in sharp], dtype=np.int64)
-    owner, place = np.concatenate([cut.owner, owner]), np.concatenate([cut.point, sharp])
+    owner, place = np.concatenate([cut.owner, beside(cut, edges, sharp)]), np.concatenate([cut.point, sharp])
     found = carried(cut.centroid, owner, place - cut.centroid[owner], neighbours(cut.cell, [len(e) - 1 for e in edges], owner))
     return Carried(owner.astype(np.int32), found.near.astype(np.int32), found.weight.astype(SINGLE), found.rest.astype(SINGLE))
+
+
+def beside(cut, edges, x: np.ndarray) -> np.ndarray:
+    """The particle nearest to each point x (K, d) of the surface, of those that have a piece of it."""
+    skin = np.unique(cut.owner)
+    skin = skin[np.argsort(cut.cell[skin])]
+    index = np.array([np.clip(np.searchsorted(e, x[:, k], side="right") - 1, 0, len(e) - 2) for k, e in enumerate(edges)])
+    return skin[nearest(index, x, cut.cell[skin], edges, cut.centroid[skin])]
 
 
 def outline_near(experiment, name: str, x: np.ndarray) -> Carried:

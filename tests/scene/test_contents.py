@@ -136,6 +136,16 @@ def test_slivers_go_to_the_nearest_cell(d, share):
     np.testing.assert_array_equal(away[np.arange(len(asked)), found], away.min(axis=1))
 
 
+def test_the_nearest_centroid_is_found():
+    rng = np.random.default_rng(7)
+    edges = [np.linspace(0, 1, 13)] * 3
+    known = np.flatnonzero(rng.uniform(size=12**3) < 0.3)
+    low = np.stack([edges[0][i] for i in np.unravel_index(known, [12] * 3)], axis=-1)
+    places, x = low + rng.uniform(size=low.shape) / 12, rng.uniform(size=(500, 3))
+    found = nearest(np.minimum(np.floor(x * 12).astype(int), 11).T, x, known, edges, places)
+    np.testing.assert_array_equal(found, np.argmin(((x[:, None] - places) ** 2).sum(-1), axis=1))
+
+
 def test_of_equally_near_cells_the_first_takes_a_sliver():
     edges = [np.arange(6.0)] * 2
     known = np.array([7, 11, 13, 17])  # the four neighbours of cell 12
