@@ -17,6 +17,7 @@ _PLACES = {
     "Experiment": "mpm.config",
     "run": "mpm.sweep.api",
     "sweep": "mpm.sweep.api",
+    "particles": "mpm.sweep.ragged",
     "plan": "mpm.sweep.cases",
     "estimate": "mpm.costs",
     "run_point": "mpm.runner",

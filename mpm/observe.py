@@ -13,9 +13,11 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import capacities, exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
 from mpm.error import Errors
+from mpm.fields import cauchy, particle_fields
 from mpm.follow import moved, nearest, renumbered, sampled
 from mpm.memory import rows
 from mpm.outcome import Outcome
+from mpm.records.variables import parts
 from mpm.state import PAD, Axisymmetric, Run, Thermal
 from mpm.total import reference as moving
 from mpm.total.heat import Warmth
@@ -32,6 +34,7 @@ class Watch:
 
     probes: dict[str, np.ndarray] = field(default_factory=dict)
     homes: dict[str, int] = field(default_factory=dict)  # number of the body that a probe is a point of; the nearest unless given
+    asked: dict[str, tuple[str, str, str]] = field(default_factory=dict)  # dataset name -> (field, probe, part) beside temperatures
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
     snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # a subset of the output times
     grid: tuple[str, ...] = ()
@@ -61,6 +64,8 @@ class Recorder:
         self.times: list[float] = []
         self.series: dict[str, list[float]] = {}
         self.frames: list[tuple[float, dict, dict]] = []
+        places = [body.particles.x for body in scene.bodies] if not scene.references else [reference.X for reference in scene.references]
+        self.begun = [x.astype(float) for x in places] if scene.watch.particles else []  # where particles were at the start
         self.places = {name: self.place(scene, name) for name in scene.watch.probes}
         self.errors = scene.watch.exact if isinstance(scene.watch.exact, Errors) else None
         self.origin = [body.particles.x.astype(float) for body in self.warm] if scene.watch.exact is not None and self.errors is None else []
@@ -99,10 +104,10 @@ class Recorder:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
-        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *wrong.items()):
+        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *wrong.items()):
             self.series.setdefault(name, []).append(float(value))
         if np.any(np.isclose(scene.watch.snapshots, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])):
-            self.frames.append((clock.time, grid_fields(scene), particle_fields(scene)))
+            self.frames.append((clock.time, grid_fields(scene), particle_fields(scene, self.begun)))
 
     def drop(self) -> None:
         """Take back the last record: what it shows is no good."""
@@ -195,6 +200,23 @@ class Recorder:
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
             yield "error_max", np.max(np.abs(error))
 
+    def at_probes(self, scene):
+        """Displacements and stresses that observables ask probes for."""
+        for name, (what, probe, part) in scene.watch.asked.items():
+            home, point = self.places[probe]
+            body, X = scene.bodies[home], np.asarray(scene.watch.probes[probe], float)
+            if what == "stress":
+                sigma = cauchy(body)[:, parts("stress", self.dimension).index(part)]
+                yield name, sampled(point, sigma, np.zeros((len(sigma), len(X))))[0]
+            else:
+                u = moving.displacement_at(scene.space, scene.references[home], X[None]) if scene.references else moved(point, body.particles.x) - X
+                yield name, u[0, axis_names(scene.space).index(part)]
+
+    @property
+    def dimension(self):
+        """As configs say it."""
+        return "axisymmetric" if isinstance(self.scene.space, Axisymmetric) else len(grid_shape(self.scene.space))
+
     def exchanging(self) -> float:
         """Area that exchanges heat."""
         skins = [reference.warmth.now for reference in self.scene.references if isinstance(reference.warmth, Warmth)]
@@ -248,33 +270,3 @@ def grid_fields(scene) -> dict[str, np.ndarray]:
             heat = gathered(lambda body: body.particles.m * (temperatures(body)))
             fields["temperature"] = (heat / mass).astype(np.float32)
     return fields
-
-
-def particle_fields(scene) -> dict[str, np.ndarray]:
-    """The particle fields asked for, bodies one after another."""
-    made = {
-        "position": lambda body: body.particles.x,
-        "velocity": lambda body: body.particles.v,
-        "temperature": temperatures,
-        "J": lambda body: body.particles.J,
-        "mass": lambda body: body.particles.m,
-        "pressure": lambda body: -principal_cauchy(scene, body).mean(axis=1),
-        "stress_mises": lambda body: mises(principal_cauchy(scene, body)),
-    }
-    fields = {}
-    for name in scene.watch.particles:
-        if name == "body":
-            fields[name] = np.concatenate([np.full(len(body.particles.m), k) for k, body in enumerate(scene.bodies)])
-        else:
-            fields[name] = np.concatenate([np.array(made[name](body)) for body in scene.bodies])
-    return fields
-
-
-def principal_cauchy(scene, body) -> np.ndarray:
-    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body), temperatures(body))
-    return tau / body.particles.J[:, None]
-
-
-def mises(sigma: np.ndarray) -> np.ndarray:
-    """sqrt(3/2) |dev sigma|."""
-    return math.sqrt(1.5) * np.linalg.norm(sigma - sigma.mean(axis=1, keepdims=True), axis=1)

@@ -115,11 +115,12 @@ def told(experiment, run: Run) -> Run:
 
 def complete(experiment, run: Run) -> Run:
     """The run; SceneError by name where it completed, and lacks something that the config asks for."""
-    from mpm.records.variables import dataset_name
+    from mpm.records.variables import dataset_name, probed
 
     output, shots, have = experiment.output, experiment.output.snapshots, {*run.series, *run.finals}
     wanted = [(f"observables.{name}", dataset_name(name) in have) for name in output.observables]
-    wanted += [(f"probes.{name}", f"temperature_{name}" in have) for name in output.probes]
+    more = {found[1] for found in map(probed, output.observables) if found is not None}
+    wanted += [(f"probes.{name}", name in more or f"temperature_{name}" in have) for name in output.probes]
     for kind, fields in (("grid", run.grid), ("particles", run.particles[0] if run.particles else {})) if shots is not None else ():
         stems = {*fields, *(name.rpartition("_")[0] for name in fields)}  # a vector has a field a direction
         wanted += [(f"snapshots.{kind}.{name}", name in stems) for name in getattr(shots, kind)]

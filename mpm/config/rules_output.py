@@ -11,7 +11,7 @@ from mpm.config.shapes_fit import bounds, home, misfits
 
 MOST_SAMPLES, MOST_NAMED = 10**6, 4
 OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff",
-             "mass", "volume", "work")  # fmt: skip
+             "displacement", "mass", "volume", "work")  # fmt: skip
 
 
 def clock(experiment: Any) -> Iterator[Finding]:
@@ -34,8 +34,16 @@ def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
     for index, (x, length) in enumerate(zip(point, experiment.grid.size, strict=False) if not wrong else ()):
         if not 0 <= x <= length:
             yield Finding((*path, index), "the probe lies outside the domain", f"0 to {length:g} [m]", given=x)
-    if not wrong and experiment.grid.dimension != 0 and not known(heats, experiment):
-        yield Finding(path, "no body has heat, and a probe tells a temperature", "a heat section in the material of a body, or no probe", on_key=True)
+    if not wrong and experiment.grid.dimension != 0 and not known(heats, experiment) and not asked_of(experiment, name):
+        allowed = f"a heat section in the material of a body, or observables: [displacement.{name}_x]"
+        yield Finding(path, "no body has heat, and a probe tells a temperature unless an observable asks it for more", allowed, on_key=True)
+
+
+def asked_of(experiment: Any, name: str) -> bool:
+    """Whether an observable asks a probe for displacement or stress."""
+    from mpm.records.variables import probed
+
+    return any(found is not None and found[1] == name for found in map(probed, experiment.output.observables))
 
 
 def probe_home(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
@@ -93,7 +101,7 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
 
 
 def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) -> Iterator[Finding]:
-    from mpm.records.variables import OBSERVABLES, fits, observable_exists, threshold
+    from mpm.records.variables import OBSERVABLES, fits, observable_exists, parts, probed, threshold
 
     path = ("output", "observables", index)
     if not observable_exists(name):
@@ -101,6 +109,8 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
         allowed = [word for word in OBSERVABLES if dimension is MISSING or fits(word, dimension)] + [
             "time_to.<probe>.<value>_degC",
             "time_to.<probe>.<value>_K",
+            "displacement.<probe>_<direction>",
+            "stress.<probe>_<component>",
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
@@ -109,6 +119,12 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
         known = experiment.output.probes
         if found.probe not in known:
             yield Finding(path, f"there is no probe {found.probe!r}", list(known) or "a probe under output.probes", near(found.probe, known), given=name)
+    elif (asked := probed(name)) is not None and asked[1] not in experiment.output.probes:
+        known_ones = list(experiment.output.probes)
+        yield Finding(path, f"there is no probe {asked[1]!r}", known_ones or "a probe under output.probes", near(asked[1], known_ones), given=name)
+    elif asked is not None and not fits(name, experiment.grid.dimension):
+        allowed = [f"{asked[0]}.{asked[1]}_{part}" for part in parts(asked[0], experiment.grid.dimension)]
+        yield Finding(path, f"there is no such component in dimension {experiment.grid.dimension}", allowed, given=name)
     elif not fits(name, experiment.grid.dimension):
         yield Finding(
             path,
@@ -135,6 +151,8 @@ def snapshots(experiment: Any) -> Iterator[Finding]:
             elif still and (key, name) != ("grid", "temperature"):
                 what = "has no particles" if key == "particles" else "has a temperature alone"
                 yield Finding(path, f"a body without `elastic` does not move, and {what}", "grid: [temperature]", given=name)
+            elif name == "velocity_gradient" and experiment.method.transfer.kind not in ("apic", "affine_flip"):
+                yield Finding(path, "particles carry no gradient of velocity with this transfer", "method.transfer: apic or affine_flip", given=name)
 
 
 def exact(experiment: Any) -> Iterator[Finding]:

@@ -126,6 +126,12 @@ TABLE = [
     ("pressure", "p", "Pa", PARTICLES, "pressure"),
     ("J", "J", "1", PARTICLES, "volume ratio det F"),
     ("stress_mises", "", "Pa", PARTICLES, "von Mises stress"),
+    ("stress", "σ", "Pa", PARTICLES, "Cauchy stress, positive in tension"),
+    ("strain", "ε", "1", PARTICLES, "elastic Hencky strain, with what temperature has expanded"),
+    ("displacement", "u", "m", PARTICLES, "displacement since the start"),
+    ("reference_position", "X", "m", PARTICLES, "position at the start"),
+    ("velocity_gradient", "∇v", "1/s", PARTICLES, "gradient of velocity, row by row"),
+    ("id", "", "1", PARTICLES, "number of the particle, the same in every snapshot"),
     ("mass", "m", "kg", PARTICLES, "mass"),
     ("body", "", "1", PARTICLES, "number of the body, in the config's order"),
     ("row_size", "", "1", PARTICLES, "number of particles in this snapshot"),
@@ -143,12 +149,23 @@ AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
 NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "work.loads", "velocity.max",
                   "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
 FIELDS_GRID = ("temperature", "velocity", "density")
-FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body")
+FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body",
+                    "stress", "strain", "displacement", "reference_position", "velocity_gradient", "id")  # fmt: skip
+TENSORS = ("stress", "strain", "velocity_gradient")  # fields of particles with a column a component
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 
 _THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")
 _IN_DATASET = r"time_to_(?P<probe>{})_(?P<value>-?\d+(?:_\d+)?)_(?P<unit>degC|K)"
+_PROBED = re.compile(r"(?P<field>displacement|stress)[._](?P<probe>[A-Za-z_]\w*)_(?P<part>[xyzr]|[xyzrt]{2})")
 _AT_PROBE = ("temperature", "velocity")
+
+
+def components(name: str, dimension: int | str | None) -> str:
+    """What the columns of a tensor of particles are, in order; nothing for any other field. Axisymmetric: t is the hoop."""
+    axes = {1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}.get(dimension, "")
+    if name == "velocity_gradient":
+        return " ".join(a + b for a in axes for b in axes)
+    return {1: "xx yy zz", 2: "xx yy zz xy", "axisymmetric": "rr zz tt rz", 3: "xx yy zz xy yz xz"}.get(dimension, "") if name in TENSORS else ""
 
 
 def dataset_name(observable: str) -> str:
@@ -171,9 +188,20 @@ def threshold(name: str, probes: Iterable[str] = ()) -> Threshold | None:
     return Threshold(match["probe"], value, unit, value + 273.15 if unit == "degC" else value)
 
 
+def probed(name: str) -> tuple[str, str, str] | None:
+    """(field, probe, part) of `displacement.tip_y` or `stress.root_xx`, or of their names in a dataset; None for any other name."""
+    match = _PROBED.fullmatch(name)
+    return (match["field"], match["probe"], match["part"]) if match and (match["field"] == "stress") == (len(match["part"]) == 2) else None
+
+
+def parts(field: str, dimension: int | str | None) -> list[str]:
+    """What a probe of a field may be asked for in scenes of a dimension."""
+    return components(field, dimension).split() if field == "stress" else list({1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}.get(dimension, ""))
+
+
 def observable_exists(name: str) -> bool:
     """Whether a config may list `name`. Whether its probe exists is for the config to say."""
-    return name in OBSERVABLES or threshold(name) is not None
+    return name in OBSERVABLES or threshold(name) is not None or probed(name) is not None
 
 
 def is_total(name: str) -> bool:
@@ -204,6 +232,9 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
     if found := threshold(name, probes):
         unit = "°C" if found.unit == "degC" else "K"
         return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
+    if found := probed(name):
+        field, probe, part = found
+        return replace(VARIABLES[field], name=name, symbol="", dims=SERIES, long_name=f"{field} along {part} at {probe.replace('_', ' ')}")
     field, _, probe = name.partition("_")
     if field == "error" and probe in VARIABLES:
         return replace(VARIABLES[probe], name=name, symbol="", long_name=f"error of {VARIABLES[probe].long_name}")
@@ -218,6 +249,8 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
 
 def fits(observable: str, dimension: int | str) -> bool:
     """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
+    if found := probed(observable):
+        return found[2] in parts(found[0], dimension)
     if observable.startswith(AT_A_POINT) and observable != "strain.max":
         return dimension == 0
     if dimension == 0 and observable in NOT_AT_A_POINT:

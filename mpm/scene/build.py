@@ -273,7 +273,7 @@ def begin(bodies, exact, zero: float, h: float) -> None:
 
 def watch(experiment, times: np.ndarray, exact=None) -> Watch:
     """What the config asks to record."""
-    from mpm.records.variables import dataset_name, threshold
+    from mpm.records.variables import dataset_name, probed, threshold
 
     shift = np.array(experiment.method.offset) * experiment.grid.cell
     found = [(dataset_name(name), threshold(name)) for name in experiment.output.observables if threshold(name) is not None]
@@ -285,6 +285,7 @@ def watch(experiment, times: np.ndarray, exact=None) -> Watch:
     return Watch(
         probes={name: np.array(x) + shift for name, x in experiment.output.probes.items()},
         homes={name: home(experiment.bodies, x, experiment.grid.size) for name, x in experiment.output.probes.items()},
+        asked={dataset_name(name): one for name in experiment.output.observables if (one := probed(name)) is not None},
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
         snapshots=due,
         grid=snapshots.grid if snapshots else (),

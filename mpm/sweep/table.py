@@ -9,7 +9,7 @@ import numpy as np
 
 from mpm.records.netcdf import Array, Group
 from mpm.records.point import Record
-from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, describe
+from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, components, describe
 from mpm.sweep.align import places
 from mpm.sweep.coordinates import fixed, planned
 from mpm.sweep.over import Over
@@ -198,7 +198,9 @@ class Table:
         group.variables["row_start"] = described("row_start", (*self.dims, "snapshot"), self.full(starts))
         for name, parts in rows.items():
             values = np.concatenate(parts)
-            group.variables[name] = described(name, ("obs", "direction")[: values.ndim], values, self.dimension)
+            columns = components(name, self.dimension)
+            kind, more = ("entry" if name == "velocity_gradient" else "component", {"components": columns}) if columns else ("direction", {})
+            group.variables[name] = described(name, ("obs", kind)[: values.ndim], values, self.dimension, **more)
         return with_axes(group, planned(self.plan))
 
     def elsewhere(self) -> Group:
