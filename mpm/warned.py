@@ -15,8 +15,7 @@ KINDS = {
     "torn": "more `method.particles`, or larger cells",
     "thin": "smaller cells",
     "probe": "put the probe where material stays",
-    "near": "smaller cells, or more room between the bodies",
-    "edge": "enlarge `grid.size`, or close the side with a wall",
+    "edge": "enlarge `grid.size`, or say under `walls` what stands there",
 }
 
 

@@ -33,7 +33,7 @@ def test_the_dataset_has_them_as_text_and_as_flags(config, tmp_path):
 
 def test_one_point_has_them_too(config, monkeypatch):
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
-    data, record, _ = run_one(load(config([fake.WARNS])))
+    data, record = run_one(load(config([fake.WARNS])))[:2]
     assert record.warnings == fake.WARNINGS and tree_of(data).warnings.item() == "\n".join(fake.WARNINGS)
 
 

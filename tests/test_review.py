@@ -1,0 +1,88 @@
+"""Every kind of warning that a run's records give rise to: a scene that must raise it, and a sibling that must not."""
+
+import numpy as np
+import pytest
+
+import mpm
+from mpm.review import LOOKS, review
+from mpm.warned import KINDS, kinds
+
+SOLID = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}, "flow": {"ellipse": {"M": 9.0, "p0": 9.0, "eta": 1.0}},
+         "heat": {"fourier": {"kappa": 0.1, "alpha": 1.5}}}  # fmt: skip
+
+WARM = {"temperature": 300.0}
+
+
+def scene(lower, upper, walls=("left",), soft=False, **changes):
+    """A bar in one direction on a wall at its left, in cells of 0.25."""
+    solid = SOLID | ({"flow": {"ellipse": {"M": 0.01, "p0": 0.3, "eta": 1.0}}} if soft else {})
+    data = {
+        "grid": {"dimension": 1, "size": [7.0], "cell": 0.25},
+        "bodies": {"bar": {"shape": {"box": {"lower": [lower], "upper": [upper]}}, "velocity": [changes.pop("speed", 0.0)], "material": "solid"} | WARM},
+        "materials": {"solid": solid}, "walls": {side: {"stick": {}} for side in walls}, "gravity": [changes.pop("gravity", 0.0)],
+        "time": {"end": 2.0}, "output": {"every": 0.1, "probes": {"tip": [upper - 0.05]}},
+    }  # fmt: skip
+    return mpm.load(data | changes)
+
+
+PAIRS = {  # kind: (raises it, does not)
+    "volume": ({"soft": True, "gravity": -0.05, "time": {"end": 10.0}}, {"gravity": -0.05, "time": {"end": 10.0}}),
+    "energy": ({"lower": 0.5, "upper": 1.25, "speed": -0.8, "time": {"end": 6.0}}, {"lower": 0.5, "upper": 1.25, "speed": 0.8, "time": {"end": 6.0}}),
+    "thin": ({"lower": 1.0, "upper": 1.3}, {"lower": 1.0, "upper": 1.6}),
+    "edge": ({"lower": 5.0, "upper": 6.7, "speed": 0.1}, {"lower": 5.0, "upper": 6.7, "speed": 0.1, "walls": ("left", "right")}),
+}
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_a_scene_raises_it_and_its_sibling_does_not(kind):
+    raised, quiet = (mpm.run_point(scene(**{"lower": 0.0, "upper": 4.0} | more)) for more in PAIRS[kind])
+    assert raised.outcome.ok and quiet.outcome.ok
+    assert kind in kinds(raised.facts["warnings"]) and kind not in kinds(quiet.facts["warnings"])
+    assert any(KINDS[kind] in text for text in raised.facts["warnings"])
+
+
+def planted(core, experiment, spoil):
+    """Kinds of the warnings of a run whose scene is spoilt half way."""
+    kept, done = [], []
+
+    def beat(_, now):
+        if now > 0.5 * experiment.time.end and not done:
+            done.append(spoil(kept[0].bodies[0]))
+        return False
+
+    run = core.play(experiment, kept.append, beat)[1]
+    assert run.outcome.ok and done
+    return kinds(review(experiment, run))
+
+
+def test_heat_that_the_ledger_misses(core):
+    """A kelvin that nobody took."""
+    experiment = core.experiment(1, {"outside": core.COLD})
+    assert planted(core, experiment, lambda body: body.thermal.theta.__isub__(1.0)) == ("heat",)
+    assert planted(core, experiment, lambda body: None) == ()
+
+
+def test_a_probe_whose_particle_is_gone(core):
+    """A particle beyond the side that the probe hangs on."""
+    experiment = scene(0.0, 4.0)
+    assert "probe" in planted(core, experiment, lambda body: body.particles.x.__setitem__(np.argmax(body.particles.x), 7.3))
+    assert planted(core, experiment, lambda body: None) == ()
+
+
+def test_every_kind_is_raised_somewhere():
+    """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
+    assert set(LOOKS) == {*PAIRS, "heat", "probe"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+
+
+def test_expansion_explains_volume(core):
+    """Warm gas in a dough may double it, and no warning says so; what it gains beyond is told."""
+    from mpm.review import explained
+
+    experiment = core.experiment(1, {"gamma": 0.5})
+    run = mpm.run_point(experiment)
+    run.series["temperature_max"] = run.series["temperature_max"] + 10.0
+    assert explained(experiment, run) == (1.0, pytest.approx(np.exp(0.5 * 10 / (3 + 4 / 3))))
+    run.series["volume_total"] = run.series["volume_total"] * np.linspace(1.0, 3.1, len(run.times))
+    assert kinds(review(experiment, run)) == ()
+    run.series["volume_total"] = run.series["volume_total"] * np.linspace(1.0, 1.2, len(run.times))
+    assert kinds(review(experiment, run)) == ("volume",)
