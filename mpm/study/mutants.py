@@ -1,0 +1,165 @@
+"""Do the tests bite? `python -m mpm.study.mutants [--only PATTERN] [--of N] [--seed S]` changes one place of the product at a time and runs the nearest tests.
+
+Each module of CHOSEN gets its share of mutants: a comparison turned round, a sum made a difference, a product a quotient, a number doubled, `and` made `or`, a
+`not` dropped. Which places is a matter of the seed alone. A mutant is killed when a test fails, or when the tests take TIMES as long as without it. The product
+itself is not touched: the tests run over a copy, in a folder that is removed.
+Printed: a line a mutant, then by module the share that was killed; survivors with their line, to be judged: a test that is missing, or a change that no test
+could see (EQUAL says of which kinds that is known).
+Times     with warm compile caches 5 to 60 s a mutant; a mutant of a kernel compiles it anew
+Fails when: the tests of a module fail without a mutant, which is said
+"""
+
+import argparse
+import ast
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TIMES, PATIENCE = 5.0, 120.0  # as long as without a mutant, and seconds more, before one counts as killed
+LARGE = 1e6  # numbers from here on are bounds that nothing meets
+CHOSEN = {  # module: (mutants, the nearest tests)
+    "mpm/materials/hencky.py": (6, "tests/materials/test_hencky.py tests/materials/test_menu.py"),
+    "mpm/materials/neo_hookean.py": (5, "tests/materials/test_menu.py"),
+    "mpm/materials/laws.py": (10, "tests/materials/test_laws.py"),
+    "mpm/materials/radial.py": (10, "tests/materials/test_returns.py"),
+    "mpm/materials/clipped.py": (10, "tests/materials/test_returns.py"),
+    "mpm/heat/exchange.py": (6, "tests/heat tests/point"),
+    "mpm/heat/local.py": (8, "tests/heat tests/point"),
+    "mpm/heat/programmes.py": (4, "tests/heat tests/point"),
+    "mpm/integrate/timestep.py": (12, "tests/integrate/test_timestep.py"),
+    "mpm/guards.py": (12, "tests/test_guards.py"),
+    "mpm/sweep/store.py": (10, "tests/sweep/test_store.py tests/sweep/test_batches.py"),
+    "mpm/sweep/engine.py": (12, "tests/sweep/test_engine.py tests/sweep/test_room.py"),
+    "mpm/sweep/room.py": (6, "tests/sweep/test_room.py"),
+    "mpm/records/netcdf.py": (6, "tests/records/test_netcdf.py"),
+    "mpm/config/units.py": (5, "tests/config/test_units.py tests/config/test_quantities.py"),
+    "mpm/config/quantities.py": (6, "tests/config/test_units.py tests/config/test_quantities.py"),
+    "mpm/config/measured.py": (6, "tests/config/test_measured.py"),
+}
+EQUAL = "a bound that is never met (x < y for x <= y), a margin of round-off, a number that only a message shows, a size of buffers"
+COMPARED = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
+COMPUTED = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One changed place: characters `start` to `end` of the file become `text`."""
+
+    path: str
+    line: int
+    start: int
+    end: int
+    text: str
+    before: str
+
+
+def mutants(path: str, source: str) -> list[Mutant]:
+    """Every mutant of a module, in the order of its places. Docstrings, annotations and what only names things stay."""
+    starts = [0]
+    for line in source.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line.encode()))
+    data, found = source.encode(), []
+
+    def put(node: ast.expr, changed: ast.expr) -> None:
+        start, end = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
+        found.append(Mutant(path, node.lineno, start, end, f"({ast.unparse(changed)})", data[start:end].decode()))
+
+    for node in computing(ast.parse(source)):
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in COMPARED:
+            put(node, ast.Compare(node.left, [COMPARED[type(node.ops[0])]()], node.comparators))
+        elif isinstance(node, ast.BinOp) and type(node.op) in COMPUTED and not textual(node):
+            put(node, ast.BinOp(node.left, COMPUTED[type(node.op)](), node.right))
+        elif isinstance(node, ast.BoolOp):
+            put(node, ast.BoolOp(ast.Or() if isinstance(node.op, ast.And) else ast.And(), node.values))
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            put(node, node.operand)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, float) and 0 < node.value < LARGE:
+            put(node, ast.Constant(node.value * 2))
+    return sorted(found, key=lambda mutant: (mutant.start, mutant.end))
+
+
+def computing(tree: ast.AST) -> Iterator[ast.AST]:
+    """Nodes of a tree, less annotations, formatted text and type unions."""
+    yield tree
+    for name, inner in ast.iter_fields(tree):
+        if name in ("annotation", "returns", "decorator_list") or isinstance(tree, ast.JoinedStr):
+            continue
+        for child in inner if isinstance(inner, list) else [inner]:
+            if isinstance(child, ast.AST):
+                yield from computing(child)
+
+
+def textual(node: ast.BinOp) -> bool:
+    return any(isinstance(side, ast.JoinedStr | ast.List) or (isinstance(side, ast.Constant) and isinstance(side.value, str)) for side in ast.walk(node))
+
+
+def run(folder: Path, tests: str, limit: float) -> tuple[bool, float]:
+    """Whether the tests pass over the copy, and how long they took; too long counts as not."""
+    began = time.monotonic()
+    environment = os.environ | {"PYTHONPATH": f"{folder}", "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", *tests.split()]
+    try:
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=limit, check=False)
+        return done.returncode == 0, time.monotonic() - began
+    except subprocess.TimeoutExpired:
+        return False, limit
+
+
+def copy(folder: Path) -> None:
+    """What the tests need, where `mpm` and `mpm_cli` are imported from."""
+    for name in ("mpm", "tests", "configs", "cli", "docs"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "CONTRIBUTING.md"):
+        shutil.copy(ROOT / name, folder)
+    shutil.copytree(ROOT / "cli", folder / "mpm_cli", ignore=shutil.ignore_patterns("__pycache__"))
+
+
+def study(folder: Path, path: str, wanted: int, tests: str, rng: random.Random) -> tuple[int, int]:
+    """Run the mutants of one module: how many there were, how many survived."""
+    place = folder / path
+    source = place.read_text(encoding="utf-8")
+    sound, took = run(folder, tests, 1800.0)
+    if not sound:
+        print(f"{path}: its tests ({tests}) fail without a mutant", flush=True)
+        return 0, 0
+    every = mutants(path, source)
+    chosen, alive = sorted(rng.sample(every, min(wanted, len(every))), key=lambda mutant: mutant.start), 0
+    for mutant in chosen:
+        data = source.encode()
+        place.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
+        survived, _ = run(folder, tests, TIMES * took + PATIENCE)
+        alive += survived
+        print(f"{'SURVIVED' if survived else 'killed  '} {path}:{mutant.line}: {mutant.before} -> {mutant.text}", flush=True)
+    place.write_text(source, encoding="utf-8")
+    return len(chosen), alive
+
+
+def main() -> None:
+    words = argparse.ArgumentParser("python -m mpm.study.mutants", description="Change one place of the product at a time: do the nearest tests fail?")
+    words.add_argument("--only", default="", help="modules whose path holds this text")
+    words.add_argument("--of", type=int, default=1, help="times as many mutants")
+    words.add_argument("--seed", type=int, default=1, help="which places are changed")
+    given = words.parse_args()
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="mpm-mutants-") as name:
+        folder = Path(name)
+        copy(folder)
+        for path, (wanted, tests) in CHOSEN.items():
+            if given.only in path:
+                rows.append((path, *study(folder, path, wanted * given.of, tests, random.Random(f"{given.seed} {path}"))))
+    for path, count, alive in rows:
+        print(f"{path:32} {count - alive:3} of {count:3} killed")
+    count, alive = (sum(row[k] for row in rows) for k in (1, 2))
+    print(f"{count - alive} of {count} mutants killed ({100 * (count - alive) / max(count, 1):.0f} %); those that survived may be equal: {EQUAL}")
+
+
+if __name__ == "__main__":
+    main()
