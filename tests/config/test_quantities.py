@@ -58,3 +58,31 @@ def test_whole():
     for wrong in (0, 6, 2.5, True, "2", None, math.nan, math.inf):
         with pytest.raises(Exception, match="the count is"):
             whole.validate(wrong)
+
+
+def refusal(quantity, value):
+    with pytest.raises(Exception, match=r".+") as caught:
+        quantity.validate(value)
+    return caught.value.context
+
+
+@pytest.mark.parametrize(("value", "suggestion"), [(-5.0, '"-5 degC"'), (0.0, '"0 degC"'), (-273.0, '"-273 degC"'), (-274.0, "")])
+def test_a_temperature_below_zero_was_meant_in_degrees_where_there_are_such(value, suggestion):
+    found = refusal(MENU["Temperature"], value)
+    assert "out of range" in found["message"] and found["suggestion"] == suggestion
+
+
+def test_what_is_no_temperature_is_not_taken_for_degrees():
+    assert refusal(MENU["Length"], -5.0)["suggestion"] == "" and refusal(MENU["Temperature"], "5 V")["suggestion"] == ""
+    assert refusal(MENU["Temperature"], "5 C")["suggestion"] == '"5 degC"' and refusal(MENU["Length"], "5 C")["suggestion"] == ""
+
+
+def test_infinity_has_a_sign():
+    exchange = get_args(quantities.Exchange)[1]
+    assert "must be finite" in refusal(exchange, -math.inf)["message"] and "must be finite" in refusal(MENU["Length"], math.inf)["message"]
+
+
+def test_units_as_datasets_write_them():
+    units = {name: quantity.units for name, quantity in MENU.items()}
+    assert units["Length"] == "m" and units["Exchange"] == "W/m2/K" and all(units.values())
+    assert {quantity.units for quantity in MENU.values() if not quantity.unit} == {"1"}
