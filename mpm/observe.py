@@ -36,10 +36,27 @@ class Watch:
     homes: dict[str, int] = field(default_factory=dict)  # number of the body that a probe is a point of; the nearest unless given
     asked: dict[str, tuple[str, str, str]] = field(default_factory=dict)  # dataset name -> (field, probe, part) beside temperatures
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
-    snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # a subset of the output times
+    snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # times [s]; a run comes to them as to its output times
     grid: tuple[str, ...] = ()
     particles: tuple[str, ...] = ()
     exact: Any = None
+
+
+def near(times: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Which of `times` is one of `others`, but for rounding; both increase."""
+    at, apart = np.searchsorted(others, times), np.concatenate([[-np.inf], others, [np.inf]])
+    return np.minimum(times - apart[at], apart[at + 1] - times) <= 1e-9 * times
+
+
+def merged(times: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Both in order; what is in both as it is in `times`."""
+    return np.sort(np.concatenate([times, others[~near(others, times)]])) if len(others) else times
+
+
+def stops(times: np.ndarray, snapshots: np.ndarray) -> list[tuple[float, bool]]:
+    """Times that a run comes to, and whether its series are told there."""
+    every = merged(times, snapshots)
+    return list(zip(every.tolist(), near(every, times).tolist(), strict=True))
 
 
 def radius_holding(share: float, r, V) -> float:
@@ -106,15 +123,20 @@ class Recorder:
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
         for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *wrong.items()):
             self.series.setdefault(name, []).append(float(value))
-        if np.any(np.isclose(scene.watch.snapshots, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])):
-            self.frames.append((clock.time, grid_fields(scene), particle_fields(scene, self.begun)))
+        self.frame(scene, clock)
+
+    def frame(self, scene, clock) -> None:
+        """A snapshot, where one is due."""
+        due = scene.watch.snapshots
+        for when in due[np.isclose(due, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])]:
+            self.frames.append((float(when), grid_fields(scene), particle_fields(scene, self.begun)))
 
     def drop(self) -> None:
         """Take back the last record: what it shows is no good."""
         when = self.times.pop()
         for values in self.series.values():
             values.pop()
-        if self.frames and self.frames[-1][0] == when:
+        if self.frames and math.isclose(self.frames[-1][0], when, rel_tol=1e-9):
             self.frames.pop()
 
     def memory(self) -> dict:

@@ -31,7 +31,7 @@ from mpm.integrate.tears import tear_open
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.lanes import aligned
 from mpm.memory import arrays, fill
-from mpm.observe import Recorder
+from mpm.observe import Recorder, stops
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.total.drive import advance_references, present_limits, show_all, warm_references
@@ -100,7 +100,7 @@ class Clock:
         self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
         self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
         self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
-        self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output, start of its interval, heat step under way, heat steps (0: none yet)
+        self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output or snapshot, start of its interval, heat step, heat steps (0: none yet)
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
@@ -153,13 +153,13 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
             keeper.save({"clock": vars(clock) | passed, **parts})
         return stop
 
-    for end in scene.times[clock.output :]:
-        result = interval(scene, clock, recorder, guards, buffers, float(end), look)
+    for end, told in stops(scene.times, scene.watch.snapshots)[clock.output :]:
+        result = interval(scene, clock, recorder, guards, buffers, end, look)
         if not result.ok:
             break
         show_all(scene)
-        recorder.record(scene, clock)
-        result = guards.frame(scene, clock, recorder.series)
+        (recorder.record if told else recorder.frame)(scene, clock)
+        result = guards.frame(scene, clock, recorder.series) if told else result
         if not result.ok:
             recorder.drop()
             break

@@ -15,6 +15,7 @@ from mpm.error import Motion
 from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
+from mpm.scene.inventory import ticks
 from mpm.scene.law import law
 from mpm.scene.load import loaded
 from mpm.scene.outline import outline_near, outline_of
@@ -51,11 +52,10 @@ SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmet
 STRAINS = {1: 3, 2: 4, 3: 6}
 
 
-def output_times(experiment) -> np.ndarray:
-    """0, every, 2 every, ..., end."""
-    end, every = experiment.time.end, experiment.output.every
-    count = max(1, math.ceil(end / every * (1 - 1e-9)))
-    return np.append(np.arange(count) * every, end)
+def output_times(experiment, every: float | None = None) -> np.ndarray:
+    """0, every, 2 every, ..., end; `every` is that of the series unless given."""
+    end, every = experiment.time.end, every or experiment.output.every
+    return np.append(np.arange(ticks(end, every) - 1) * every, end)
 
 
 def grid_space(experiment):
@@ -256,7 +256,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
-        watch=watch(experiment, times, exact),
+        watch=watch(experiment, exact),
     )
 
 
@@ -271,23 +271,19 @@ def begin(bodies, exact, zero: float, h: float) -> None:
             body.thermal.c[:, k] = (exact(x + step, 0.0) - exact(x - step, 0.0)) / (2e-3 * h)
 
 
-def watch(experiment, times: np.ndarray, exact=None) -> Watch:
+def watch(experiment, exact=None) -> Watch:
     """What the config asks to record."""
     from mpm.records.variables import dataset_name, probed, threshold
 
     shift = np.array(experiment.method.offset) * experiment.grid.cell
     found = [(dataset_name(name), threshold(name)) for name in experiment.output.observables if threshold(name) is not None]
     snapshots = experiment.output.snapshots
-    due = np.zeros(0)
-    if snapshots is not None:
-        wanted = np.append(np.arange(0.0, times[-1] * (1 - 1e-9), snapshots.every), times[-1])
-        due = times[np.unique(np.argmin(np.abs(times[:, None] - wanted), axis=0))]
     return Watch(
         probes={name: np.array(x) + shift for name, x in experiment.output.probes.items()},
         homes={name: home(experiment.bodies, x, experiment.grid.size) for name, x in experiment.output.probes.items()},
         asked={dataset_name(name): one for name in experiment.output.observables if (one := probed(name)) is not None},
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
-        snapshots=due,
+        snapshots=output_times(experiment, snapshots.every) if snapshots else np.zeros(0),
         grid=snapshots.grid if snapshots else (),
         particles=snapshots.particles if snapshots else (),
         exact=exact,

@@ -25,13 +25,18 @@ def physics(experiment) -> dict[str, list[str]]:
     return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
 
 
+def ticks(end: float, every: float) -> int:
+    """How many times are 0, every, 2 every, ..., end."""
+    return max(1, math.ceil(end / every * (1 - 1e-9))) + 1
+
+
 def output_bytes(experiment, particles: int) -> int:
     """Bytes of a point's file: series in float64, snapshots in float32 (grid) and float64 (particles), before compression."""
-    samples = math.ceil(experiment.time.end / experiment.output.every) + 1
+    samples = ticks(experiment.time.end, experiment.output.every)
     size = 4_000 + samples * 8 * (28 + len(experiment.output.probes))
     snapshots = experiment.output.snapshots
     if snapshots is not None:
-        frames = math.ceil(experiment.time.end / snapshots.every) + 1
+        frames = ticks(experiment.time.end, snapshots.every)
         nodes = math.prod(round(s / experiment.grid.cell) + 1 for s in experiment.grid.size)
         size += frames * (4 * nodes * len(snapshots.grid) + 8 * particles * len(snapshots.particles) * 2)
     return size

@@ -6,6 +6,7 @@ import numpy as np
 
 from mpm.heat.programmes import bounds
 from mpm.materials import value
+from mpm.observe import merged, near
 from mpm.scene.build import SceneError, output_times, watch
 from mpm.scene.exchange import must_conduct, programme, robin
 from mpm.scene.law import law
@@ -61,7 +62,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=shots, keeper=keeper)
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
-    series |= look.errors(solved.snapshots[: len(solved.times)], shift)
+    series |= look.errors(solved.snapshots, shift, len(solved.times))
     finals = {name: float(values[-1]) for name, values in series.items()}
     finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
     finals["steps"] = float(solved.steps)
@@ -81,9 +82,10 @@ class Looks:
     """Where and when a rigid run is looked at beside its probes: points of the bodies for the error against an exact solution, nodes for snapshots."""
 
     def __init__(self, experiment, times: np.ndarray, exact):
-        grid, wanted = experiment.grid, watch(experiment, times)
+        grid, wanted = experiment.grid, watch(experiment)
         self.exact, self.due, self.axes = exact, wanted.snapshots, {}
-        self.times = times if exact is not None else self.due
+        self.times = merged(times, self.due) if exact is not None else self.due
+        self.told = near(self.times, times)  # the times of the series
         self.inside, self.weights = np.zeros((0, grid.directions)), np.zeros(0)
         if exact is not None:
             name = experiment.exact.body or next(iter(experiment.bodies))
@@ -99,11 +101,12 @@ class Looks:
             nodes = np.stack([a.ravel() for a in np.meshgrid(*self.axes.values(), indexing="ij")], axis=-1)
         self.points = np.concatenate([self.inside, nodes])
 
-    def errors(self, seen: np.ndarray, shift: np.ndarray) -> dict[str, np.ndarray]:
-        """Root-mean-square and largest error at every output time; the exact solution stands in the grid's coordinates."""
+    def errors(self, seen: np.ndarray, shift: np.ndarray, count: int) -> dict[str, np.ndarray]:
+        """Root-mean-square and largest error at the first `count` output times; the exact solution stands in the grid's coordinates."""
         if self.exact is None:
             return {}
-        error = np.array([row[: len(self.weights)] - self.exact(self.inside + shift, t) for row, t in zip(seen, self.times, strict=False)])
+        told = np.flatnonzero(self.told)[:count]
+        error = np.array([seen[row, : len(self.weights)] - self.exact(self.inside + shift, self.times[row]) for row in told])
         square = (error**2 @ self.weights) / self.weights.sum()
         return {"error_l2": np.sqrt(square), "error_max": np.abs(error).max(axis=1)}
 
@@ -111,9 +114,9 @@ class Looks:
         """Snapshots on the grid, last direction first, NaN outside the bodies."""
         if not self.axes:
             return
-        shown = np.flatnonzero(np.isin(self.times, self.due))
+        shown = np.flatnonzero(near(self.times, self.due))
         shown = shown[self.times[shown] <= run.times[-1] * (1 + 1e-12)]
         shape = tuple(len(a) for a in self.axes.values())
         fields = seen[shown, len(self.weights) :].reshape(len(shown), *shape)
-        run.axes, run.snapshot_times = self.axes, self.times[shown]
+        run.axes, run.snapshot_times = self.axes, self.due[: len(shown)]
         run.grid = {"temperature": fields.transpose(0, *range(len(shape), 0, -1)).astype(np.float32)}
