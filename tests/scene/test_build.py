@@ -93,4 +93,5 @@ def test_refused_with_advice(core):
 
 
 def test_exchange_without_conduction_is_refused(core):
-    refused(core, "kappa", "conductivity", changes={"kappa": 0.0})
+    with pytest.raises(ConfigError, match="'solid' conducts no heat"):
+        core.experiment(1, {"kappa": 0.0})
