@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mpm.boundary import CONTACT, SLIP, STICK
+from mpm.config import ConfigError
 from mpm.materials import Hencky
 from mpm.scene.build import SceneError, build, elastic_law, output_times
 from mpm.state import PAD, NoExchange, NoExpansion, NoHeating
