@@ -98,8 +98,8 @@ class Clock:
         self.bound: dict[str, int] = {}
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
         self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
-        self.stepped: tuple[float, float, str] | None = None  # last mechanical step, its limit [s] and the limit's name
-        self.heated: tuple[float, float, str] | None = None  # the same of the last heat sub-step
+        self.seen = np.tile([math.inf, -math.inf], (len(scene.bodies), 1))  # lowest and highest temperature of body and surroundings so far
+        self.stepped = self.heated = None  # (step, its limit [s], the limit's name) of the last mechanical step and of the last heat sub-step
         self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output or snapshot, start of its interval, heat step, heat steps (0: none yet)
         self.reports = np.zeros((len(scene.bodies), REPORT))
         self.reset()
@@ -223,10 +223,10 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
     clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
     held = warm_energy(scene.space, scene.bodies)
-    for body, one in zip(scene.bodies, scene.surroundings, strict=True):
+    for body, one, seen in zip(scene.bodies, scene.surroundings, clock.seen, strict=True):
         walls = scene.walls if one is None else one.mirrors(scene.space, body, scene.walls)
         lost = lost_to_grid(scene, body, buffers[3], walls)
-        between = bounds_of(body) if scene.repair and isinstance(body.thermal, Thermal) else None
+        between = bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None
         if implicit:
             gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
             if count < 0:

@@ -73,10 +73,22 @@ class Fbar(Kind):
     own: Fraction = doc(0.02, description="share of its own volume change that a particle keeps; without any, a body that flows far comes apart")
 
 
+class AutoBounds(Kind):
+    """Repair in bodies that move; bodies that do not have `method.rigid`."""
+
+    kind: ClassVar[str] = "auto"
+
+
 class Repair(Kind):
     """What lies beyond the temperatures of body and surroundings is moved to particles that have room for it."""
 
     kind: ClassVar[str] = "repair"
+
+
+class Free(Kind):
+    """Temperatures are as the transfer leaves them: what it overshoots by is told."""
+
+    kind: ClassVar[str] = "free"
 
 
 class AutoHeat(Kind):
@@ -135,7 +147,7 @@ class AutoMoving(Kind):
 HEAT: tuple[type[Kind], ...] = (AutoMoving, ExplicitHeat, StabilisedHeat, ImplicitHeat)
 TRANSFERS: tuple[type[Kind], ...] = (Apic, Flip, Pic, AffineFlip, Xpic)
 LOCKING: tuple[type[Kind], ...] = (Fbar,)
-BOUNDS: tuple[type[Kind], ...] = (Repair,)
+BOUNDS: tuple[type[Kind], ...] = (AutoBounds, Repair, Free)
 RIGID: tuple[type[Kind], ...] = (AutoHeat, Implicit, Explicit, Bounded)
 Transfer = one_of("transfer", *TRANSFERS)
 
@@ -150,7 +162,7 @@ class Method(Model):
         "updated", description="updated: particles carry the state over the grid; total: weights of the shape at the start, for bodies that do not flow far"
     )
     locking: one_of("cure of locking", *LOCKING) | None = doc(None, description="for nearly incompressible bodies that move")
-    bounds: one_of("keeper of bounds", *BOUNDS) | None = doc(None, description="temperatures between those of body and surroundings, for bodies that move")
+    bounds: one_of("keeper of bounds", *BOUNDS) = doc(AutoBounds(), description="temperatures between those of body and surroundings, for bodies that move")
     precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")

@@ -248,7 +248,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         blend=blend,
         affine=affine,
         sharp=sharp,
-        repair=experiment.method.bounds is not None,
+        repair=type(experiment.method.bounds).kind != "free",
         tears=experiment.method.fracture == "fail",
         times=times,
         step=None if experiment.time.step == "auto" else experiment.time.step,

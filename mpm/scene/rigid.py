@@ -22,7 +22,7 @@ def rigid_bodies(experiment, field=None) -> list:
         raise SceneError(f"grid.basis {experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out")
     if experiment.method.locking is not None:
         raise SceneError("method.locking is for bodies that move, and none of these has `elastic`; leave it out")
-    if experiment.method.bounds is not None:
+    if type(experiment.method.bounds).kind != "auto":
         raise SceneError("method.bounds is for bodies that move, and none of these has `elastic`; method.rigid: bounded keeps bounds here")
     bodies = []
     for name, body in experiment.bodies.items():

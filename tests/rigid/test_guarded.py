@@ -81,3 +81,19 @@ def test_a_flux_without_conduction(q):
     assert run.outcome.ok and run.series["temperature.mean"][-1] - 293.15 == pytest.approx(rise, rel=1e-9)
     still = run.series["temperature.min" if q > 0 else "temperature.max"]
     np.testing.assert_allclose(still, 293.15, atol=1e-9)
+
+
+def test_a_run_says_what_leaves_its_data():
+    """A method that was chosen by name is warned of; the automatic one has nothing to say."""
+    import mpm
+    from mpm.warned import kinds
+
+    block = {"shape": {"box": {"lower": [0, 0], "upper": ["40 mm", "20 mm"]}}, "temperature": "20 degC", "material": "wet"}
+    alpha = {"bump": {"base": 3000, "heat": 2.5e5, "at": "-1 degC", "width": "0.5 K"}}
+    data = {
+        "grid": {"dimension": 2, "size": ["40 mm", "20 mm"], "cell": "2 mm"}, "bodies": {"block": block},
+        "materials": {"wet": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": alpha}}}},
+        "surfaces": [{"of": "block", "convection": {"beta": 500, "outside": "-30 degC"}}], "time": {"end": 5000, "step": 500}, "output": {"every": 500},
+    }  # fmt: skip
+    chosen, free = (mpm.run_point(mpm.load(data, {"method.rigid": kind})) for kind in ("implicit", "auto"))
+    assert chosen.outcome.ok and kinds(chosen.facts["warnings"]) == ("temperature",) and kinds(free.facts.get("warnings", ())) == ()
