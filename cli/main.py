@@ -5,6 +5,7 @@ Exit codes   0 ok; 1 internal error, disk (stdout's too), or (compare) different
 """
 
 import sys
+import warnings
 
 import typer
 from mpm_cli.bench import bench
@@ -42,6 +43,8 @@ for command in COMMANDS:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command and return its exit code."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # what users should know has words of its own; `python -W` shows the rest
     with streams() as (out, err):
         code = command_code(sys.argv[1:] if arguments is None else arguments)
         out.flush()

@@ -8,6 +8,7 @@ Fails when: a scene stiffens or speeds up, so that its steps are not those of it
 
 import math
 
+from mpm.config.rules_size import MOST_UNKNOWNS
 from mpm.scene.inventory import output_bytes, physics
 
 # Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
@@ -22,7 +23,6 @@ COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
 
 
-MOST_UNKNOWNS = 2_000_000
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 LOOKED = 50_000  # particles of a scene that are all made to see its limits
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell

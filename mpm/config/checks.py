@@ -11,6 +11,7 @@ from mpm.config import rules_frame as framing
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
+from mpm.config import rules_size as size
 from mpm.config.explain import Finding
 from mpm.config.loose import Unknown
 from mpm.config.problems import MOST_FINDINGS
@@ -63,6 +64,8 @@ def each(section: str) -> Callable[[Any], Iterator[tuple]]:
 RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.names, once),
     (scene.grid, once),
+    (size.count, once),
+    (size.steps, once),
     (scene.body, each("bodies")),
     (scene.body_shape, each("bodies")),
     (scene.body_motion, each("bodies")),

@@ -185,6 +185,7 @@ class Gauge:
 
     def expected(self, cell: float, pilots: list[Pilot]) -> float | None:
         """Seconds that a pilot should take: by the last one that ran, else by the estimates; None where neither is known."""
+        from mpm.config import ConfigError
         from mpm.scene.refusal import SceneError
 
         timed = [pilot for pilot in pilots if math.isfinite(pilot.seconds)]
@@ -192,23 +193,23 @@ class Gauge:
             if timed:
                 return timed[-1].seconds * ratio(self.experiment, self.settings, cell, timed[-1].cell)
             return estimated(self.experiment, self.settings, cell)
-        except SceneError:
+        except (SceneError, ConfigError):
             return None
 
     def run(self, cell: float, cells: float) -> Pilot:
         """One pilot; of the first without an exact solution there is no error yet."""
-        from mpm.config import load
+        from mpm.config import ConfigError, load
         from mpm.runner import run_point, warm
         from mpm.scene.refusal import SceneError
 
-        point = load(self.experiment.template(), self.settings | {"grid.cell": cell})
         try:
+            point = load(self.experiment.template(), self.settings | {"grid.cell": cell})
             if not self.warm:
                 warm(point)
                 self.warm = True
             began = time.process_time()
             run = run_point(point)
-        except SceneError as error:
+        except (SceneError, ConfigError) as error:
             return Pilot(cells, cell, math.inf, math.nan, str(error).splitlines()[0])
         seconds = time.process_time() - began
         if not run.outcome.ok:

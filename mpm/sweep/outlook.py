@@ -9,7 +9,7 @@ from mpm import compiling
 from mpm.config.variation import digits, rounded
 from mpm.sweep import engine
 from mpm.sweep.api import default_out, skipped
-from mpm.sweep.room import size
+from mpm.sweep.room import Room, size
 from mpm.sweep.store import Store
 from mpm.sweep.tally import Points, missing
 
@@ -33,7 +33,7 @@ def outlook(
     lines, _ = store.lines(points.ids)
     due = missing(points, lines, rerun)
     first = points.cases[points.ids[due[0]]] if len(due) else plan.cases[0] if plan.cases else None
-    cost = importlib.import_module(engine.RUNNER).estimate(first.experiment) if first else {}
+    cost = estimate(first.experiment) if first else {}
     step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") else None
     return {
         "name": experiment.name,
@@ -47,13 +47,21 @@ def outlook(
         "dimensions": [dimension(dim) for dim in plan.dims],
         "estimate": cost,
         "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
-        "smaller": smaller(first.experiment, tolerance, heard) if first else None,
+        "smaller": smaller(first.experiment, tolerance, heard) if first and "refused" not in cost else None,
         "jobs": jobs,
         "compiling_seconds": compiling.expected(first.experiment) if first else 0.0,
         "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
         "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
         "memory_bytes": cost["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in cost else None,
     }
+
+
+def estimate(experiment: Any) -> dict[str, Any]:
+    """What the point will cost; where it needs more memory than is free, only that, as the rest would need it too."""
+    room = Room(Path(), None, far=False)
+    if refusal := room.refusal(need := room.need(experiment)):
+        return {"refused": f"the point {refusal}: neither steps nor seconds are estimated", "memory_bytes": need}
+    return importlib.import_module(engine.RUNNER).estimate(experiment)
 
 
 def smaller(experiment: Any, tolerance: float | None, heard: Callable[[str], None]) -> dict[str, Any]:
@@ -100,6 +108,8 @@ def said(found: dict[str, Any]) -> str:
         for row in dim["coordinates"]:
             told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {ends(row['first'], row['last'])} {row['units']}".rstrip())
     cost = found["estimate"]
+    if refused := cost.get("refused"):
+        return "\n".join([*told, refused, *said_groups(found["groups"])])
     if physics := cost.get("physics"):
         told.append(f"compiled  {', '.join(physics['compiled']) or 'nothing'}")
         told.append(f"left out  {', '.join(physics['absent']) or 'nothing'}")
