@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from mpm_cli.options import Jobs, Json, MaxRuns, Quiet, Set, folder, limit, load
+from mpm_cli.options import Jobs, Json, MaxRuns, Quiet, Set, again, folder, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, say
 
@@ -16,6 +16,7 @@ Peer = Annotated[list[str] | None, typer.Option(metavar="NAME=COMMAND", help=BES
 
 
 def chart(
+    context: typer.Context,
     configs: Configs,
     out: Out = None,
     jobs: Jobs = "auto",
@@ -41,6 +42,8 @@ def chart(
     codes, told = [], []
     for config in configs:
         found = one(config, out, jobs, set_, quick, compiling and not quick, peers, timeout, max_runs, as_json, quiet)
+        if found["stopped"]:
+            say(f"stopped ({found['stopped']}); to go on: {again(context)}", as_json, False)
         codes.append(found["exit_code"])
         told.append(found)
     if as_json:
@@ -60,9 +63,7 @@ def one(config: Path, out: Any, jobs: int, set_: Any, quick: bool, cold: bool, p
     picture = draw(result) if not result.stopped else None
     for line in result.sentences:
         say(line, as_json, quiet)
-    if result.stopped:
-        say(f"stopped ({result.stopped}); the same command goes on", as_json, False)
-    else:
+    if not result.stopped:
         say(f"{result.dataset}\n{picture}", as_json, quiet)
     files = {"out": place, "dataset": result.dataset, "picture": picture}
     return {**files, "answer": result.sentences, "counts": result.counts, "stopped": result.stopped or None, "exit_code": result.exit_code}

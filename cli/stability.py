@@ -3,12 +3,13 @@
 from typing import Any
 
 import typer
-from mpm_cli.options import Config, Jobs, Json, Out, Quiet, Set, Smoke, load
+from mpm_cli.options import Config, Jobs, Json, Out, Quiet, Set, Smoke, again, load
 from mpm_cli.progress import Bar, reporter
 from mpm_cli.talk import document, internal, say, warn
 
 
 def stability(
+    context: typer.Context,
     config: Config,
     out: Out = None,
     jobs: Jobs = "auto",
@@ -32,7 +33,7 @@ def stability(
     folder = out or default_out(experiment)
     done = run(experiment, folder, Options(jobs, smoke=smoke), calm(reporter(as_json, quiet)), lambda text: say(text, quiet=quiet or as_json))
     if done.dataset is None:
-        warn(f"stopped ({done.result.stopped}); the same command goes on")
+        warn(f"stopped ({done.result.stopped}); to go on: {again(context)}")
         raise typer.Exit(done.result.exit_code)
     picture, said = draw(done.dataset), sentences(done.map)
     if as_json:
