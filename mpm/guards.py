@@ -57,8 +57,17 @@ class Guards:
             vars(one).update(seen)
         vars(self).update(found)
 
+    def share(self, scene) -> None:
+        """Bodies that pass heat to each other have one range of data."""
+        links = scene.meeting.links if scene.meeting is not None else np.zeros((0, 0))
+        for b, c in np.argwhere(links > 0):
+            one, other = self.data[b], self.data[c]
+            one.low, one.high = min(one.low, other.low), max(one.high, other.high)
+            one.heats, one.flux = one.heats or other.heats, one.flux or other.flux
+
     def block(self, scene, clock) -> Outcome:
         """Before a block of steps: temperatures. All else is looked at as the block opens (integrate/sound.py)."""
+        self.share(scene)
         if all(data.judge(body) is None for body, data in zip(scene.bodies, self.data, strict=True) if isinstance(body.thermal, Thermal)):
             return outcome(COMPLETED)
         return self.whole(scene, clock)

@@ -6,6 +6,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 from dataclasses import dataclass
 
 COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
+UNPREPARED = 12
 UNSOUND = -1  # what a block of steps was to begin from: mpm.guards looks again, and says which of these it is
 
 KINDS = {
@@ -20,6 +21,7 @@ KINDS = {
     MAX_PRINCIPLE: ("max_principle", "a temperature left the bounds of its data", "lower `time.safety` or `method.heat_step`"),
     HEAT_SOLVER: ("heat_solver", "an implicit heat step did not converge", "lower `method.heat_step`, or raise `method.heat.implicit.tolerance`"),
     FRACTURED: ("fractured", "particles are more than two cells apart", "more `method.particles` or larger cells; `method.fracture: warn` lets it run on"),
+    UNPREPARED: ("unprepared", "a body came near a wall or another body unforeseen", "name what it meets: the wall as `contact`, the pair under `contacts`"),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

@@ -210,7 +210,7 @@ def compile_heat(experiment) -> None:
 
     scene, clock = at_start(experiment)
     now = present_limits(scene, clock)
-    warm_bodies(scene, clock, work_arrays(scene), min(scene.heat_step or now.pace, float(scene.times[1])), now)
+    warm_bodies(scene, clock, work_arrays(scene), 0.0, min(scene.heat_step or now.pace, float(scene.times[1])), now)
 
 
 __all__ = ["estimate", "run_point", "run_points", "warm"]

@@ -11,31 +11,25 @@ from typing import Any
 
 import numpy as np
 
-from mpm.boundary import directions, extents
-from mpm.boundary.blocks import new_blocks
+from mpm.contact.block import advance_block, work_arrays
 from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
 from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.bounds import bounds_of, keep_between
-from mpm.integrate.explicit import advance
-from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.order import Order
 from mpm.integrate.sharpen import correct, lost_to_grid
-from mpm.integrate.slabs import advance_slabs
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
 from mpm.integrate.tears import tear_open
 from mpm.integrate.timestep import SUBSTEPS, Limits
-from mpm.lanes import aligned
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder, stops
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.total.drive import advance_references, present_limits, show_all, warm_references
-from mpm.transfer import columns, wants_change
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
@@ -75,6 +69,7 @@ class Scene:
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
     watch: Any = None  # what to record: mpm.observe.Watch
+    meeting: Any = None  # mpm.contact.meeting.Meeting, or None
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
@@ -140,6 +135,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         scene.order.recall(before["order"])
         fill(scene.bodies, before["bodies"])
         fill(scene.references, before["references"])
+        if scene.meeting is not None:
+            scene.meeting.recall(before["meeting"])
     else:
         recorder.record(scene, clock)
         result = guards.frame(scene, clock, recorder.series)
@@ -150,6 +147,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
             passed = {"spent": clock.spent + time.perf_counter() - began}
             parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory()}
             parts |= {"bodies": arrays(scene.bodies), "references": arrays(scene.references)}
+            parts |= {"meeting": scene.meeting.memory()} if scene.meeting is not None else {}
             keeper.save({"clock": vars(clock) | passed, **parts})
         return stop
 
@@ -170,17 +168,6 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     return run
 
 
-def work_arrays(scene: Scene):
-    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, their boxes and blocks, scalars where there is heat."""
-    n, D = math.prod(extents(scene.space)), directions(scene.space)
-    dtype = scene.bodies[0].particles.x.dtype
-    nodes = aligned((2, n, columns(D)), dtype)
-    force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
-    warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
-    rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else STABILISED_ROWS
-    return nodes, force, (np.zeros((2, 3, 2), np.int64), new_blocks(n)), np.zeros((rows, n if warm else 0))
-
-
 def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, look) -> Outcome:
     """Advance to the output time `end`; from within the interval where the run was cut there."""
     cut = clock.parts > 0
@@ -192,29 +179,34 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
         clock.parts = max(1, math.ceil((end - clock.start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
     while clock.part < clock.parts:
         until = clock.start + (end - clock.start) * (clock.part + 1) / clock.parts
-        if not cut:
-            result = warm_bodies(scene, clock, buffers, until - clock.time, now)
+        begun = clock.start + (end - clock.start) * clock.part / clock.parts
+        later = scene.meeting is not None and scene.meeting.warms  # heat that passes by touch follows the motion that says who touched
+        if not (cut or later):
+            result = warm_bodies(scene, clock, buffers, begun, until - begun, now)
             if not result.ok:
                 return result
             recorder.watch(scene, until)
         cut = False
         result = march(scene, clock, guards, buffers, until, look)
+        now = present_limits(scene, clock)
+        if result.ok and later:
+            result = warm_bodies(scene, clock, buffers, begun, until - begun, now)
+            recorder.watch(scene, until)
         if not result.ok:
             return result
-        now = present_limits(scene, clock)
         clock.part += 1
     clock.parts = 0
     return guards.whole(scene, clock)
 
 
-def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> Outcome:
-    """One heat step of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
+def warm_bodies(scene: Scene, clock: Clock, buffers, begun: float, dt: float, now: Limits) -> Outcome:
+    """One heat step from `begun` on of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
     if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
         return warm_references(scene, clock, dt) if now.heat or around else outcome(COMPLETED)
     tear_open(scene)
     for body, one in around:
-        one.write(scene.space, body, clock.time, dt)
+        one.write(scene.space, body, begun, dt)
     if not all(one.steady for _, one in around):
         now = present_limits(scene, clock)
     kind, stable = scene.heat.kind, now.substep() * scene.safety
@@ -223,11 +215,22 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
     clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
     held = warm_energy(scene.space, scene.bodies)
-    for body, one, seen in zip(scene.bodies, scene.surroundings, clock.seen, strict=True):
-        walls = scene.walls if one is None else one.mirrors(scene.space, body, scene.walls)
-        lost = lost_to_grid(scene, body, buffers[3], walls)
-        between = bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None
-        if implicit:
+    met = scene.meeting
+    kinds = [scene.walls] * len(scene.bodies) if met is None else met.walls
+    trio = zip(scene.bodies, scene.surroundings, kinds, strict=True)
+    mirrors = np.stack([walls if one is None else one.mirrors(scene.space, body, walls) for body, one, walls in trio])
+    before = [(lost_to_grid(scene, body, buffers[3], walls), bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None)
+              for body, walls, seen in zip(scene.bodies, mirrors, clock.seen, strict=True)]  # fmt: skip
+    joined = ()
+    if met is not None and (links := met.heat_links(mirrors, dt)) is not None:
+        joined, (gained, _, count) = met.conduct(scene, mirrors, links, dt)
+        if count < 0:
+            return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
+        clock.exchanged, clock.iterations, implicit = clock.exchanged + gained, clock.iterations + count, True
+    for b, (body, walls, (lost, between)) in enumerate(zip(scene.bodies, mirrors, before, strict=True)):
+        if b in joined:
+            gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
+        elif implicit:
             gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
@@ -242,6 +245,8 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         if between is not None:
             moved, left = keep_between(scene.space, body, buffers[3], walls, *between)
             clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
+    if met is not None:
+        met.warmed()
     clock.heat_steps, clock.softened = clock.heat_steps + 1, clock.softened + warm_energy(scene.space, scene.bodies) - held
     if implicit:
         clock.implicit += 1
@@ -249,19 +254,6 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, dt: float, now: Limits) -> 
         binding = min(now.heat, key=now.heat.get)
         clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
     return outcome(COMPLETED)
-
-
-def advance_block(scene: Scene, clock: Clock, buffers, dt: float, steps: int) -> None:
-    """One block of `steps` steps of dt; clock.reports tells of it."""
-    nodes, force, (boxes, blocks), _ = buffers
-    scene.order.refresh()
-    clock.reset()
-    astray, begun, reports = False, clock.steps, clock.reports
-    if scene.order.sliced:
-        astray = advance_slabs(scene, nodes, force, boxes, blocks, float(dt), steps, begun, reports)
-    else:
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, scene.walls, scene.gravity, dt, steps, begun, reports)
-    scene.order.passed(math.sqrt(max(reports[:, SPEED])) * dt * steps, steps, astray)
 
 
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
@@ -282,7 +274,9 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)
-        (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)
+        taken = (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)
+        if taken is not None and not taken.ok:
+            return taken
         clock.gather(dt)
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
         if failed is not None:

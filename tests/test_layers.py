@@ -17,7 +17,7 @@ LAYERS = {
     "cache": 0, "fingerprint": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0,
     "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
-    "diagnostics": 2, "follow": 2, "integrate": 2, "total": 2,
+    "diagnostics": 2, "follow": 2, "integrate": 2, "total": 2, "contact": 2,
     "error": 2, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
     "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
@@ -28,7 +28,8 @@ PEERS = {
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
-    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "error": {"diagnostics"}, "simulation": {"observe", "guards"}, "observe": {"fields"},
+    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"},
+    "error": {"diagnostics"}, "simulation": {"observe", "guards"}, "observe": {"fields"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"},
 }  # fmt: skip

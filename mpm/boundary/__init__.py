@@ -2,7 +2,8 @@
 
 Walls stand on grid lines. A slip or stick wall is a mirror: what particles put on the ghost node outside is folded on to its image
 inside, and nodal velocities are continued outside by reflection, so a linear field is exact up to the wall (setting wall nodes to
-zero alone would flatten it there). A contact wall only stops nodes at and behind it from moving outwards.
+zero alone would flatten it there). It is bonded: it acts on bodies that started at it, and never lets go. At a contact wall nodes are free, and what
+holds a body is the gap of its surface (mpm.contact).
 
 May use   mpm.jit, mpm.lanes, mpm.state                        May not  see particles or laws
 To add    a kind: a number here, its rule in walls.py, its name in config
@@ -11,7 +12,7 @@ To add    a kind: a number here, its rule in walls.py, its name in config
 from mpm.jit import role
 from mpm.state import Axisymmetric, Line, Plane, Volume
 
-SLIP, STICK, CONTACT = 0, 1, 2
+SLIP, STICK, CONTACT, STOP = range(4)  # mirrors; free nodes; nodes that may not move outwards, as peers have them (mpm bench)
 KINDS = {"slip": SLIP, "stick": STICK, "contact": CONTACT}
 
 

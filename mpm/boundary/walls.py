@@ -1,14 +1,13 @@
-"""Slip, stick and contact walls on the faces of the domain.
+"""Slip and stick walls on the faces of the domain.
 
 With a ghost node g outside a wall (PAD of them, so that any basis finds its own) and its image i inside: fold  m_i += m_g, p_i += s p_g  with s = -1
 for the components that the wall holds (the normal one; all of them at a stick wall) and +1 for the others; the wall's own node carries v = 0 in the
 held components; unfold  v_g = s v_i.
 This is the mirrored body written down, so it conserves mass, and heat (s = +1: insulated) exactly.
-Contact: v_n = max(v_n, 0) inwards at and behind the wall; the body may leave.
-Fails when: a body at a contact wall is sampled by fewer than two particles a cell (it sinks in by up to half a cell).
+Contact walls do nothing here (mpm.contact). A stop, for measurements beside peers only: v_n = max(v_n, 0) inwards at and behind the wall.
 """
 
-from mpm.boundary import CONTACT, STICK
+from mpm.boundary import CONTACT, STICK, STOP
 from mpm.boundary.blocks import BLOCK
 from mpm.jit import kernel
 from mpm.lanes import poke
@@ -31,7 +30,7 @@ def fold(nodes, components, shape, box, walls, blocks=None):
         if shape[axis] == 1:
             continue
         for side in range(2):
-            if walls[axis, side] == CONTACT:
+            if walls[axis, side] >= CONTACT:
                 continue
             wall = PAD if side == 0 else shape[axis] - 1 - PAD
             for k in range(1, PAD + 1):
@@ -49,7 +48,7 @@ def unfold(nodes, components, shape, box, walls, blocks=None):
         if shape[axis] == 1:
             continue
         for side in range(2):
-            if walls[axis, side] == CONTACT:
+            if walls[axis, side] >= CONTACT:
                 continue
             wall = PAD if side == 0 else shape[axis] - 1 - PAD
             for k in range(1, PAD + 1):
@@ -81,7 +80,7 @@ def mirror_plane(nodes, components, shape, box, axis, ghost, image, kind, add, b
 
 @kernel
 def impose(nodes, components, shape, box, walls):
-    """Hold the velocity components that each wall holds, on its own plane; behind a contact wall, none moves outwards."""
+    """Hold the velocity components that each wall holds, on its own plane; behind a stop, none moves outwards."""
     stride = (shape[1] * shape[2], shape[2], 1)
     for axis in range(3):
         if shape[axis] == 1:
@@ -89,16 +88,18 @@ def impose(nodes, components, shape, box, walls):
         a, b = (axis + 1) % 3, (axis + 2) % 3
         for side in range(2):
             kind = walls[axis, side]
+            if kind == CONTACT:
+                continue
             wall = PAD if side == 0 else shape[axis] - 1 - PAD
             first, last = (wall, wall + 1)
-            if kind == CONTACT:
+            if kind == STOP:
                 first, last = (0, wall + 1) if side == 0 else (wall, shape[axis])
             for k in range(max(first, box[axis, 0]), min(last, box[axis, 1])):
                 for i in range(box[a, 0], box[a, 1]):
                     for j in range(box[b, 0], box[b, 1]):
                         n = i * stride[a] + j * stride[b] + k * stride[axis]
                         for c in range(components):
-                            if kind == CONTACT:
+                            if kind == STOP:
                                 if c == axis:
                                     nodes[n, c] = max(nodes[n, c], 0.0) if side == 0 else min(nodes[n, c], 0.0)
                             elif held(kind, axis, c):

@@ -6,7 +6,7 @@ from pydantic import model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
 from mpm.config.programmes import Programme
-from mpm.config.quantities import Emissivity, Exchange, HeatFlux
+from mpm.config.quantities import Emissivity, Exchange, Friction, HeatFlux
 
 Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral"], Choice()]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
@@ -75,21 +75,22 @@ class Face(Kind):
 
 
 class Slip(Face):
-    """No motion through the wall, free motion along it."""
+    """No motion through the wall, free motion along it: a mirror, bonded to the bodies that start at it. Others meet it as contact without friction."""
 
     kind: ClassVar[str] = "slip"
 
 
 class Stick(Face):
-    """No motion at the wall."""
+    """No motion at the wall: bonded to the bodies that start at it. Others meet it as contact without sliding."""
 
     kind: ClassVar[str] = "stick"
 
 
 class Contact(Face):
-    """Slip that lets go: no motion into the wall, free motion away from it."""
+    """A face that is touched and left: no motion into it, free motion away from it, friction along it."""
 
     kind: ClassVar[str] = "contact"
+    friction: Friction = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches")
 
 
 WALLS: tuple[type[Kind], ...] = (Slip, Stick, Contact)

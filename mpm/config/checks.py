@@ -77,6 +77,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.surface_twice, each("surfaces")),
     (scene.surface_names, once),
     (scene.load, each("loads")),
+    (scene.contact, each("contacts")),
     (scene.walls, each("walls")),
     (scene.mechanics, once),
     (scene.gravity, once),

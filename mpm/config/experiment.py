@@ -12,6 +12,7 @@ from mpm.config.base import Kind, Model, doc
 from mpm.config.bodies import Body
 from mpm.config.boundary import Surface, Wall
 from mpm.config.chart import Chart
+from mpm.config.contacts import Pair
 from mpm.config.laws import Constant
 from mpm.config.loading import Stage
 from mpm.config.loads import Load
@@ -37,6 +38,7 @@ class Experiment(Model):
     materials: dict[str, Material] = doc(min_length=1, description="materials by name")
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
+    contacts: tuple[Pair, ...] = doc((), description="pairs of bodies that meet; those not named slide without friction and conduct without resistance")
     gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
     loads: tuple[Load, ...] = doc((), description="tractions on bodies that move, and drag")
     loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")

@@ -147,6 +147,7 @@ TemperatureDifference = Annotated[float, Quantity("K", "temperature difference",
 Modulus = Annotated[float, Quantity("Pa", "modulus", above=0)]
 Pressure = Annotated[float, Quantity("Pa", "pressure")]
 Exchange = Annotated[float, Quantity("W/m**2/K", "heat-transfer coefficient", least=0, infinite=True)]
+Friction = Annotated[float, Quantity("", "coefficient of friction", least=0, infinite=True)]
 HeatFlux = Annotated[float, Quantity("W/m**2", "heat flux")]
 Emissivity = Annotated[float, Quantity("", "emissivity", least=0, most=1)]
 PerKelvin = Annotated[float, Quantity("1/K", "expansion per kelvin", difference=True)]

@@ -209,6 +209,21 @@ def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
             yield Finding(("loads", index, "side"), f"there is no such side in dimension {dimension}", list(sides), near(item.side, sides), given=item.side)
 
 
+def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """Two bodies that are there, move, and are not named together elsewhere."""
+    known, at = experiment.bodies, ("contacts", index, "between")
+    for place, name in enumerate(item.between):
+        if name not in known:
+            yield Finding((*at, place), "there is no such body", list(known), near(name, known), given=name)
+            return
+    if item.between[0] == item.between[1]:
+        yield Finding((*at, 1), "the same body twice: a body does not meet itself", [name for name in known if name != item.between[0]], given=item.between[1])
+    elif any(frozenset(other.between) == frozenset(item.between) for other in experiment.contacts[:index] if other is not MISSING):
+        yield Finding(at, "this pair is named before", "one entry a pair", on_key=True)
+    elif not moves(experiment):
+        yield Finding(at, "no body here has an elastic law: bodies that do not move pass no heat to each other", "an elastic section", on_key=True)
+
+
 def used(experiment: Any) -> list[Any]:
     """Materials of all bodies; Unknown if a body names one that is not there, since then nothing can be said of what the bodies do."""
     if any(item.material not in experiment.materials for item in experiment.bodies.values()):

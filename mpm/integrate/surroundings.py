@@ -1,8 +1,8 @@
 """Who acts on which pieces of a moving body, and when: writes the surroundings of a heat step into its Surface.
 
 Where nothing changes in time or place they are written once. beta is capped at PENALTY kappa/h, so beta = inf is a fixed temperature and the
-answer is monotone in beta. A hot wall replaces whatever else acts on the pieces that touch it: within half a cell of its plane and facing it
-(outward normal within 60 degrees of the wall's).
+answer is monotone in beta. A hot wall replaces whatever else acts on the pieces that touch it, for the share of the heat step that they touched it
+(mpm.contact); at a mirror wall, which holds what it touches: within half a cell of its plane and facing it (outward normal within 60 degrees of the wall's).
 
 For heat, a mirror wall through which something is exchanged is a free surface: a mirror would make the temperature level off where a flux acts. An insulated
 one stays a mirror. A slab that exchanges through its side on a stick wall, Bi = 10, Fo = 0.1, error of the mean at 16, 32, 64 cells: 5.0, 2.5, 1.2 % where that
@@ -43,6 +43,7 @@ class HotWall:
     side: int
     beta: float
     temperature: Any
+    touched: Any = None  # (S,) time in touch since the last heat step [s]; None: a mirror
 
 
 @dataclass
@@ -107,11 +108,31 @@ class Surroundings:
 
     def touch(self, wall: HotWall, space, body, start: float, dt: float) -> None:
         """The pieces at a hot wall exchange with it alone."""
+        if wall.touched is not None:
+            self.share(wall, body.surface, start, dt)
+            return
         surface, here = body.surface, facing(space, body, wall.axis, wall.side, REACH)
         first, last = (at(wall.temperature, t) - self.zero for t in (start, start + dt))
         surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = self.cap(wall.beta), first, last - first, 0.0
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[here] = 0.0
+
+    def share(self, wall: HotWall, surface, start: float, dt: float) -> None:
+        """The pieces that touched a wall for a part of the heat step exchange with it for that part, and with the rest for what is left."""
+        s = np.flatnonzero(wall.touched > 0.0)
+        if len(s) == 0 or dt == 0.0:
+            return
+        part = np.minimum(wall.touched[s] / dt, 1.0)
+        beta, free = part * self.cap(wall.beta), 1.0 - part
+        first, last = (at(wall.temperature, t) - self.zero for t in (start, start + dt))
+        both = free * surface.beta[s] + beta
+        weight = beta / np.maximum(both, 1e-300)
+        surface.outside[s] += weight * (first - surface.outside[s])
+        surface.drift[s] += weight * (last - first - surface.drift[s])
+        surface.beta[s] = both
+        surface.flux[s] *= free
+        if isinstance(surface.radiation, Radiation):
+            surface.radiation.emissivity[s] *= free
 
 
 def facing(space, body, axis: int, side: int, within: float) -> np.ndarray:

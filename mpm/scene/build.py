@@ -9,15 +9,17 @@ import math
 import numpy as np
 
 from mpm.basis import BASES
-from mpm.boundary import KINDS, extents
+from mpm.boundary import extents
 from mpm.config.shapes_fit import home
 from mpm.error import Motion
 from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
+from mpm.scene.exchange import pieces_of
 from mpm.scene.inventory import ticks
 from mpm.scene.law import law
 from mpm.scene.load import loaded
+from mpm.scene.meeting import cornered, meeting, plan_meetings
 from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
@@ -38,6 +40,7 @@ from mpm.state import (
     NoExchange,
     NoExpansion,
     NoHeating,
+    NoRadiation,
     Particles,
     Plane,
     Softening,
@@ -121,11 +124,12 @@ def expansion_law(model, elastic, theta: np.ndarray, zero: float):
     return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)
 
 
-def moving_body(experiment, name: str, zero: float, space, most: float = math.inf):
+def moving_body(experiment, name: str, zero: float, space, meets: bool, most: float = math.inf):
     """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
     cut, edges, outline = sample(experiment, config, most)
+    cut = cornered(cut, experiment.grid.cell) if meets else cut
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -148,7 +152,9 @@ def moving_body(experiment, name: str, zero: float, space, most: float = math.in
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
-        surface, surroundings, seams = surface_and_seams(experiment, name, cut, edges, zero, SIDES[experiment.grid.dimension], thermal)
+        surface, surroundings, seams = surface_and_seams(experiment, name, cut, edges, zero, SIDES[experiment.grid.dimension], thermal, meets)
+    elif meets:
+        surface = pieces_of(cut, np.arange(len(cut.owner)), dtype, NoRadiation())
     if material.expansion is not None:
         expansion = expansion_law(material.expansion, elastic, thermal.theta, zero)
     if material.heating is not None:
@@ -192,15 +198,6 @@ def heat_method(experiment) -> HeatMethod:
     return HeatMethod(kind, getattr(heat, "order", 1), getattr(heat, "tolerance", HeatMethod.tolerance))
 
 
-def wall_kinds(experiment) -> np.ndarray:
-    """(3, 2) kinds; slip where the config says nothing, and on the axis."""
-    kinds = np.full((3, 2), KINDS["slip"])
-    for number, side in enumerate(SIDES[experiment.grid.dimension]):
-        if side in experiment.walls:
-            kinds[number // 2, number % 2] = KINDS[type(experiment.walls[side]).kind]
-    return kinds
-
-
 def build(experiment, exact=None, most: float = math.inf) -> Scene:
     """The scene of one point, its bodies of at most about `most` particles each: fewer to look at, not to run. SceneError where no method can run it."""
     names = tuple(experiment.bodies)
@@ -213,12 +210,15 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
     scheme, blend, affine, sharp = schemes(experiment)
     times, references = output_times(experiment), ()
     if experiment.method.frame == "total":
-        from mpm.scene.total import total_bodies  # which asks this module for laws
+        from mpm.scene.total import total_bodies, wall_kinds  # which asks this module for laws
         bodies, references, surroundings = total_bodies(experiment, zero, space)
-        seams = (None,) * len(names)
+        seams, walls = (None,) * len(names), wall_kinds(experiment)
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
-        bodies, surroundings, seams, outlines = zip(*(moving_body(experiment, name, zero, space, most) for name in names), strict=True)
+        meets = plan_meetings(experiment, SIDES[experiment.grid.dimension])
+        made = (moving_body(experiment, name, zero, space, met, most) for name, met in zip(names, meets.any, strict=True))
+        bodies, surroundings, seams, outlines = zip(*made, strict=True)
+        walls = meets.walls.min(axis=0)
         refuse_idle(experiment, seams)
     for body, around in zip(bodies, surroundings, strict=True):
         if around is not None:
@@ -233,6 +233,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         bodies = (first, *bodies[1:])
     for body, reference in zip(bodies, references, strict=False):
         begin_nodes(space, body, reference)
+    met = None if references else meeting(meets, space, bodies, surroundings)
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),
@@ -243,7 +244,8 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         seams=seams,
         references=references,
         outlines=outlines,
-        walls=wall_kinds(experiment),
+        walls=walls,
+        meeting=met,
         gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * experiment.grid.directions),
         blend=blend,
         affine=affine,

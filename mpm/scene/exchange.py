@@ -56,14 +56,18 @@ def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:
         raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
 
 
-def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
-    """(Surface, Surroundings, pieces kept) of a body: the pieces that an entry names, all of them where a wall is hot; NoExchange, None where nothing acts."""
+def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, meets: bool = False):
+    """(Surface, Surroundings, pieces kept) of a body: the pieces that an entry names, all of them where a wall is hot or the body `meets` something.
+
+    NoExchange, None where nothing acts and nothing is met.
+    """
     acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side)))]
     acts = [act for act in acts if len(act.pieces)]
     walls = hot_walls(experiment, sides)
     if not acts and not walls:
-        return NoExchange(), None, np.zeros(0, np.int64)
-    kept = np.arange(len(cut.owner)) if walls else np.unique(np.concatenate([act.pieces for act in acts]))
+        kept = np.arange(len(cut.owner)) if meets else np.zeros(0, np.int64)
+        return pieces_of(cut, kept, thermal.theta.dtype, NoRadiation()) if meets else NoExchange(), None, kept
+    kept = np.arange(len(cut.owner)) if walls or meets else np.unique(np.concatenate([act.pieces for act in acts]))
     acts = [Act(np.searchsorted(kept, act.pieces), act.beta, act.outside, act.flux, act.emissivity, act.sky) for act in acts]
     radiating = [act for act in acts if act.emissivity > 0]
     if len(np.unique(np.concatenate([act.pieces for act in radiating] or [kept[:0]]))) < sum(len(act.pieces) for act in radiating):
@@ -72,15 +76,19 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal):
     seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
     most = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
     must_conduct(name, most > 0, any(act.beta > 0 for act in (*acts, *walls)) or bool(radiating))
+    radiation = Radiation(np.zeros(len(kept)), np.ones(len(kept)), np.zeros(len(kept))) if radiating else NoRadiation()
+    return pieces_of(cut, kept, thermal.theta.dtype, radiation), Surroundings(acts, walls, zero, most), kept
+
+
+def pieces_of(cut, kept: np.ndarray, dtype, radiation) -> Surface:
+    """The Surface of the pieces `kept`, that exchange nothing yet."""
     S, D = len(kept), cut.centroid.shape[1]
-    owner, dtype = cut.owner[kept], thermal.theta.dtype
+    owner = cut.owner[kept]
     owners = np.unique(owner)
     row = np.full(len(cut.volume), -1, np.int32)
     row[owners] = np.arange(len(owners))
     F = np.tile(np.eye(D, dtype=dtype), (len(owners), 1, 1))
-    radiation = Radiation(np.zeros(S), np.ones(S), np.zeros(S)) if radiating else NoRadiation()
-    surface = Surface(
+    return Surface(
         F, row, owner, cut.area[kept, None] * cut.normal[kept], cut.point[kept] - cut.centroid[owner],
         np.zeros(S), np.zeros(S), np.zeros(S), np.zeros(S), radiation,
     )  # fmt: skip
-    return surface, Surroundings(acts, walls, zero, most), kept

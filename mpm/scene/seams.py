@@ -13,12 +13,12 @@ from mpm.scene.exchange import exchanging_surface
 from mpm.scene.refusal import SceneError
 
 
-def surface_and_seams(experiment, name: str, cut, edges, zero: float, sides, thermal):
+def surface_and_seams(experiment, name: str, cut, edges, zero: float, sides, thermal, meets: bool = False):
     """(Surface, Surroundings, Seams) of a body, as mpm.scene.exchange gives them; no seams unless `method.fracture: surface` asks for them."""
     if experiment.method.fracture != "surface":
-        return *exchanging_surface(experiment, name, cut, zero, sides, thermal)[:2], None
+        return *exchanging_surface(experiment, name, cut, zero, sides, thermal, meets)[:2], None
     more, piece, area = with_seams(cut, edges, experiment.grid.dimension == "axisymmetric")
-    surface, surroundings, kept = exchanging_surface(experiment, name, more, zero, sides, thermal)
+    surface, surroundings, kept = exchanging_surface(experiment, name, more, zero, sides, thermal, meets)
     return surface, surroundings, None if surroundings is None else seams_of(kept, piece, area)
 
 

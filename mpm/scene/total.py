@@ -5,11 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mpm.boundary import CONTACT, STICK, directions, extents
+from mpm.boundary import CONTACT, KINDS, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
 from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, value
-from mpm.scene.build import SIDES, STRAINS, elastic_law, expansion_law, spin_tensor, wall_kinds
+from mpm.scene.build import SIDES, STRAINS, elastic_law, expansion_law, spin_tensor
 from mpm.scene.exchange import exchanging_surface
 from mpm.scene.law import law
 from mpm.scene.quadrature import knots, points
@@ -23,6 +23,15 @@ from mpm.total.step import courant_of
 NEAR = 1.5  # cells: what is nearer to a wall shares nodes with its mirror
 FACING = 0.5  # of a unit normal
 FLUSH = 1e-9  # of the domain
+
+
+def wall_kinds(experiment) -> np.ndarray:
+    """(3, 2) kinds; slip where the config says nothing, and on the axis."""
+    kinds = np.full((3, 2), KINDS["slip"])
+    for number, side in enumerate(SIDES[experiment.grid.dimension]):
+        if side in experiment.walls:
+            kinds[number // 2, number % 2] = KINDS[type(experiment.walls[side]).kind]
+    return kinds
 
 
 def total_bodies(experiment, zero: float, space) -> tuple[tuple, tuple, tuple]:

@@ -1,6 +1,6 @@
 """`mpm bench` without a config: an elastic cube thrown at the floor of a unit box, the scene that other MPM codes are timed on.
 
-Neo-Hookean, MLS gradient, APIC, quadratic splines, explicit; contact walls two cells from the edge of the box; jittered lattice, `ppc` particles a cell, a
+Neo-Hookean, MLS gradient, APIC, quadratic splines, explicit; nodes stop two cells from the edge of the box; jittered lattice, `ppc` particles a cell, a
 step of 0.2 h/c. One JSON line: milliseconds a step (smallest, median, largest block), million particle-steps a second, and `check`, the means of y, v_y,
 v^2 and the spread of x after all steps, which agrees with another code's to 5 digits in float32 and 7 in float64 when it does the same work.
 
@@ -67,7 +67,7 @@ def lattice(options: Options) -> tuple[np.ndarray, float]:
 
 def cube(options: Options):
     """The scene, ready to run, in coordinates from the walls."""
-    from mpm.boundary import KINDS
+    from mpm.boundary import STOP
     from mpm.materials import NeoHookean, NoFlow
     from mpm.simulation import Scene
     from mpm.state import PAD, Body, Isothermal, NoExchange, NoExpansion, NoHeating, Particles, Plane, Volume
@@ -85,7 +85,7 @@ def cube(options: Options):
     space = Plane(h, nodes, nodes) if dim == 2 else Volume(h, nodes, nodes, nodes)
     gravity = np.zeros(dim)
     gravity[1] = GRAVITY
-    return Scene(space, Mls(), Apic(), ("cube",), (body,), np.full((3, 2), KINDS["contact"]), gravity, 1.0, 1.0, np.array([0.0, 1.0]), None, 1.0, None)
+    return Scene(space, Mls(), Apic(), ("cube",), (body,), np.full((3, 2), STOP), gravity, 1.0, 1.0, np.array([0.0, 1.0]), None, 1.0, None)
 
 
 def bench(options: Options) -> dict:

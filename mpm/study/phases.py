@@ -79,7 +79,7 @@ class Bench:
 
     def heat(self) -> None:
         """A heat step of every body."""
-        warm_bodies(self.scene, self.clock, self.buffers, 1e-3 * min(self.now.pace, 1.0), self.now)
+        warm_bodies(self.scene, self.clock, self.buffers, self.clock.time, 1e-3 * min(self.now.pace, 1.0), self.now)
 
     def step_ns(self) -> float:
         """ns a particle and mechanical step."""

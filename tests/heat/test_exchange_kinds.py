@@ -143,13 +143,13 @@ def test_a_pan_does_not_heat_what_hangs_over_it():
 
 
 def test_a_pan_heats_what_falls_on_it():
-    """From where its face comes within half a cell (0.0625), and not before."""
+    """From where its face touches (0.05 cells, 0.00625), and not before."""
     data = pan(0.1, air=False).resolved()
     data["bodies"]["block"]["velocity"], data["time"], data["output"] = [0.0, -0.5], {"end": 0.3}, {"every": 0.02}
     run = mpm.run_point(mpm.load(data))
     face, taken = run.series["position_min_y"], run.series["heat_exchanged"]
-    assert run.outcome.ok and np.sum(face > 0.065) > 3 and np.sum(face < 0.055) > 2
-    assert np.all(taken[face > 0.065] == 0.0) and np.all(np.diff(taken[face < 0.055]) > 0)
+    assert run.outcome.ok and np.sum(face > 0.007) > 3 and np.sum(face < 0.005) > 2
+    assert np.all(taken[face > 0.007] == 0.0) and np.all(np.diff(taken[face < 0.005]) > 0)
     assert np.abs(run.series["heat_ledger"]).max() < 1e-12 * taken[-1] and run.finals["temperature_max"] > 400
 
 

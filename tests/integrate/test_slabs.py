@@ -116,7 +116,7 @@ def test_particles_that_drift_past_their_slab_are_scattered_late(core, small, mo
         return late[-1]
 
     _, plain = played(core, scene(core), 1)
-    monkeypatch.setattr("mpm.simulation.advance_slabs", watched)
+    monkeypatch.setattr("mpm.contact.block.advance_slabs", watched)
     runs = [played(core, scene(core), threads)[1] for threads in (1, 2)]
     assert any(late) and bits(runs[0]) == bits(runs[1]) and bits(runs[0]) != bits(plain)
     for name, values in plain.series.items():

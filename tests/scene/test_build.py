@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm.boundary import CONTACT, SLIP, STICK
+from mpm.boundary import CONTACT, SLIP
 from mpm.config import ConfigError
 from mpm.materials import Hencky
 from mpm.scene.build import SceneError, build, elastic_law, output_times
@@ -49,7 +49,7 @@ def test_particles_a_cell(core):
 
 def test_walls_gravity_and_the_axis(core):
     scene = build(core.experiment("axisymmetric", walls={"bottom": "stick", "outer": "contact"}, gravity=[0, -9.81]))
-    assert scene.walls[:2].tolist() == [[SLIP, CONTACT], [STICK, SLIP]] and scene.gravity.tolist() == [0, -9.81]
+    assert scene.walls[:2].tolist() == [[SLIP, CONTACT], [CONTACT, CONTACT]] and scene.gravity.tolist() == [0, -9.81]
 
 
 def test_methods(core):

@@ -1,0 +1,31 @@
+"""Pairs of bodies that meet."""
+
+from pydantic import model_validator
+
+from mpm.config.base import Model, doc, problem
+from mpm.config.quantities import Exchange, Friction
+
+
+class Nothing(Model):
+    """No parameters: `stick: {}`."""
+
+
+class Pair(Model):
+    """How two bodies meet. A pair that is not named slides without friction and passes heat without resistance."""
+
+    between: tuple[str, ...] = doc(description="two names under bodies", min_length=2, max_length=2)
+    friction: Friction = doc(0.0, description="coefficient of friction; .inf holds as stick does")
+    stick: Nothing | None = doc(None, description="no sliding while they touch; they may part")
+    welded: Nothing | None = doc(None, description="one body to motion, for ever")
+    conductance: Exchange | None = doc(
+        None, description="heat that passes where they touch, by area and difference of temperature; without resistance (.inf) unless given"
+    )
+
+    @model_validator(mode="after")
+    def one_kind(self) -> "Pair":
+        """Friction, stick or welded."""
+        given = [key for key in ("friction", "stick", "welded") if getattr(self, key) not in (None, 0.0)]
+        if len(given) > 1:
+            raise problem("contact", f"{given[0]} and {given[1]} say different things of one pair", "one of friction, stick, welded", at=(given[1],))
+        return self
+

@@ -1,0 +1,15 @@
+"""Bodies that meet walls and each other: hard non-penetration at the true pieces of their surfaces.
+
+    lambda_n >= 0,   u_n + g/dt >= 0,   lambda_n (u_n + g/dt) = 0,   |lambda_t| <= mu lambda_n opposite to sliding        a contact, every step
+    u = sum W v_A - (velocity of the obstacle, or sum W v_B),        v_i += W_i lambda/m_i
+
+skin      where the pieces of a surface are now             spots     nodes and weights of a piece
+find      which of them are near what, and the gap g        weights   W: linear-exact, and balanced with the stress of the particles
+solve     the impulses, by projected Gauss-Seidel           step      the mechanical step of scenes in which something is near (integrate/explicit.py elsewhere)
+meeting   what of it outlasts a step, and when it is needed
+
+One velocity field a body, or a group of welded ones. No stiffness, no shorter step, no gap, no tension.
+May use   mpm.integrate and below                          May not  see configs
+Fails when   a contact is narrower than a cell (force right, pressure not); a flow tears new surface, which has no pieces: against walls particles then stand
+             for it, between bodies nothing does; a body folds on to itself; sheets are thinner than a cell
+"""

@@ -1,0 +1,88 @@
+"""Where the pieces of all bodies' surfaces are now: x_s = x_p + F D, S n = J F^-T A (as heat/surface.py, with the normal)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import literal_unroll
+
+from mpm.boundary import directions
+from mpm.jit import kernel, role
+from mpm.state import NoExchange, Surface
+
+POINT = 1e-9  # of a face of a cell: the area of a piece that is a corner
+
+
+class Skin(NamedTuple):
+    """P pieces of all bodies, one body after another."""
+
+    x: np.ndarray  # (P, D) where they are [m]
+    normal: np.ndarray  # (P, D) unit, outward
+    area: np.ndarray  # (P,) [m^(D-1)]; 0: shut
+    home: np.ndarray  # (P, D) their particles
+    owner: np.ndarray  # (P,) number of the particle
+    body: np.ndarray  # (P,)
+    first: np.ndarray  # (bodies + 1,) first piece of each body
+
+
+@kernel
+def new_skin(D, first):
+    """Room for the pieces of bodies that begin at `first`."""
+    P = first[-1]
+    skin = Skin(np.empty((P, D)), np.zeros((P, D)), np.empty(P), np.empty((P, D)), np.empty(P, np.int64), np.empty(P, np.int64), first)
+    for b in range(len(first) - 1):
+        skin.body[first[b] : first[b + 1]] = b
+    return skin
+
+
+@kernel
+def lay_skins(space, bodies, skin):
+    """Fill the skin from the bodies."""
+    b = 0
+    for body in literal_unroll(bodies):
+        lay_skin(body.surface, space, body, skin, skin.first[b])
+        b += 1
+
+
+@role
+def lay_skin(surface, space, body, skin, first):
+    """One body's pieces, from number `first` on."""
+    raise TypeError(f"no pieces of {type(surface).__name__}")
+
+
+@lay_skin.register(NoExchange)
+def _(surface, space, body, skin, first):
+    return None
+
+
+@lay_skin.register(Surface)
+def _(surface, space, body, skin, first):
+    D, x, J = directions(space), body.particles.x, body.particles.J
+    for s in range(surface.owner.shape[0]):
+        p, k = surface.owner[s], first + s
+        F, A, o = surface.F[surface.row[p]], surface.area[s], surface.offset[s]
+        skin.owner[k] = p
+        for a in range(D):
+            skin.home[k, a] = x[p, a]
+            there = float(x[p, a])
+            for c in range(D):
+                there += F[a, c] * o[c]
+            skin.x[k, a] = there
+        if D == 1:
+            skin.normal[k, 0] = A[0]
+        elif D == 2:
+            out = J[p] / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
+            skin.normal[k, 0], skin.normal[k, 1] = out * (F[1, 1] * A[0] - F[1, 0] * A[1]), out * (F[0, 0] * A[1] - F[0, 1] * A[0])
+        else:
+            for a in range(3):
+                b, c, total = (a + 1) % 3, (a + 2) % 3, 0.0
+                for i in range(3):
+                    j, k2 = (i + 1) % 3, (i + 2) % 3
+                    total += (F[b, j] * F[c, k2] - F[b, k2] * F[c, j]) * A[i]
+                skin.normal[k, a] = total
+        size = 0.0
+        for a in range(D):
+            size += skin.normal[k, a] ** 2
+        size = size**0.5
+        skin.area[k] = size
+        for a in range(D):
+            skin.normal[k, a] /= max(size, 1e-300)

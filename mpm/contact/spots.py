@@ -1,0 +1,72 @@
+"""The nodes around a particle with weights and the gradient operator of the run; ghost nodes of mirror walls stand for their images.
+
+A mirrored vector has the image's components times `sign`: -1 for what the wall holds, +1 else, 0 for what is held on the wall's own plane.
+"""
+
+import numpy as np
+
+from mpm.basis import inverse_moment, stencil
+from mpm.boundary import CONTACT, directions, extents
+from mpm.boundary.walls import held
+from mpm.jit import kernel
+from mpm.state import PAD
+from mpm.transfer import uses_basis_gradient
+
+
+@kernel
+def seen(space):
+    """Nodes that a particle sees in one direction."""
+    return len(stencil(space.basis, 0.5)[1])
+
+
+@kernel
+def new_spots(space):
+    """Scratch of `spot`: nodes at (M,), weights w (M,), gradients G (D, M), ways (D, M) from the particle, signs (D, M), and per direction."""
+    D, reach = directions(space), seen(space)
+    M = reach**D
+    line, place, mirror = np.empty((3, D, reach)), np.empty((D, reach), np.int64), np.empty((2, D, reach), np.int64)
+    return np.empty(M, np.int64), np.empty(M), np.empty((D, M)), np.empty((D, M)), np.empty((D, M)), line, place, mirror
+
+
+@kernel
+def spot(space, gradient, walls, home, spots):
+    """Fill the scratch for a particle at `home` (D,) of a body that has mirrors where `walls` (3, 2) say so. Whether a mirror is in sight."""
+    at, w, G, way, sign, line, place, mirror = spots
+    D, shape, M, reach = directions(space), extents(space), at.shape[0], place.shape[1]
+    mirrored = False
+    for a in range(D):
+        i0, wa, ga, da, _ = stencil(space.basis, home[a] / space.h)
+        for k in range(len(wa)):
+            i, n = i0 + k, shape[a]
+            line[0, a, k], line[1, a, k], line[2, a, k] = wa[k], ga[k] / space.h, da[k] * space.h
+            mirror[0, a, k] = mirror[1, a, k] = -1  # side of the wall; whether on its plane
+            if walls[a, 0] < CONTACT and i <= PAD:
+                i, mirror[0, a, k], mirror[1, a, k] = 2 * PAD - i, 0, i == PAD
+            elif walls[a, 1] < CONTACT and i >= n - 1 - PAD:
+                i, mirror[0, a, k], mirror[1, a, k] = 2 * (n - 1 - PAD) - i, 1, i == n - 1 - PAD
+            mirrored = mirrored or mirror[0, a, k] >= 0
+            place[a, k] = i
+    scale = 0.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
+    for m in range(M):
+        n, weight, rest, stride = 0, 1.0, m, M
+        for a in range(D):
+            stride //= reach
+            k = rest // stride
+            rest -= k * stride
+            n = n * shape[a] + place[a, k]
+            weight *= line[0, a, k]
+        at[m], w[m] = n, weight
+        for c in range(D):
+            slope, flip, rest, stride = 1.0, 1.0, m, M
+            for a in range(D):
+                stride //= reach
+                k = rest // stride
+                rest -= k * stride
+                slope *= line[1, a, k] if a == c else line[0, a, k]
+                if a == c:
+                    way[c, m] = line[2, a, k]
+                if mirror[0, a, k] >= 0 and held(walls[a, mirror[0, a, k]], a, c):
+                    flip *= 0.0 if mirror[1, a, k] == 1 else -1.0
+            sign[c, m] = flip
+            G[c, m] = slope if uses_basis_gradient(gradient) else scale * weight * way[c, m]
+    return mirrored

@@ -1,0 +1,205 @@
+"""Through which nodes a contact acts on a body.
+
+w~_i = w_ip + G_ip . (x_s - x_p)                     linear-exact: sum w~ = 1, sum w~ x_i = x_s, and sum w~ v_i is the speed of the piece as F carries it
+r_i  = sum_p V_p G_ip - sum_s S_s n_s w~_is          what a uniform stress puts on a node beyond a uniform traction: the quadrature of cut cells
+W_i  = w~_i + (n . r_i) w_ip/sum_s S_s w_ip(s),      then W_i += m_i (a + b . (x_i - x_s)) with sum W = 1, sum W x_i = x_s
+
+With W a body in equilibrium under a traction has the same strain in its surface particles as inside; with w~ up to 1.5 times. Corners, and faces that do not
+look along the normal, keep w~. In an axisymmetric body V_p carries its hoop stress too: r_i += V_p w_ip/r_p along r.
+"""
+
+import numpy as np
+from numba import literal_unroll
+
+from mpm.boundary import directions
+from mpm.contact.spots import new_spots, seen, spot
+from mpm.jit import kernel, role
+from mpm.state import Axisymmetric, Line, Plane, Volume
+
+
+@role
+def hoop(space):
+    """Whether the first direction is a radius."""
+    raise TypeError(f"no directions of {type(space).__name__}")
+
+
+@hoop.register(Line)
+@hoop.register(Plane)
+@hoop.register(Volume)
+def _(space):
+    return False
+
+
+@hoop.register(Axisymmetric)
+def _(space):
+    return True
+
+
+@kernel
+def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, now, number):
+    """(at (count, 2, M), coef (count, 2, D, M)) of the contacts; number (nodes,) -1 before and after."""
+    D, M = directions(space), seen(space) ** directions(space)
+    at, coef = np.zeros((count, 2, M), np.int64), np.zeros((count, 2, D, M))
+    spots, b = new_spots(space), 0
+    for body in literal_unroll(bodies):
+        f = fields[b]
+        weigh_body(space, gradient, body, b, walls[f], skin, contacts, count, nodes[f, now], number, spots, at, coef)
+        b += 1
+    return at, coef
+
+
+@kernel
+def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, number, spots, at, coef):
+    """One body's sides of the contacts."""
+    D, M, marked = directions(space), at.shape[2], 0
+    low, high = np.full(D, 1e300), np.full(D, -1e300)
+    for i in range(count):
+        for k in range(2):
+            if contacts.body[i, k] != b or not contacts.balanced[i, k]:
+                continue
+            spot(space, gradient, walls, contacts.home[i, k], spots)
+            for m in range(M):
+                if number[spots[0][m]] < 0:
+                    number[spots[0][m]] = marked
+                    marked += 1
+            for a in range(D):
+                low[a], high[a] = min(low[a], contacts.home[i, k, a]), max(high[a], contacts.home[i, k, a])
+    short = np.zeros((marked, D + 1))  # r, and the sum of S w
+    if marked > 0:
+        fall_short(space, gradient, body.particles, b, walls, skin, low, high, number, spots, short)
+    system, W = np.empty((D + 1, D + 2)), np.empty(M)
+    for i in range(count):
+        for k in range(2):
+            if contacts.body[i, k] != b:
+                continue
+            mirrored = spot(space, gradient, walls, contacts.home[i, k], spots)
+            plain(spots, contacts.home[i, k], contacts.point[i, k], W)
+            if contacts.balanced[i, k]:
+                balance(space, contacts, i, k, nodes, number, spots, short, system, W)
+            for m in range(M):
+                at[i, k, m] = spots[0][m]
+                for c in range(D):
+                    coef[i, k, c, m] = W[m] * spots[4][c, m]
+            if mirrored:
+                merge(at[i, k], coef[i, k])
+    for i in range(count):
+        for k in range(2):
+            if contacts.body[i, k] == b and contacts.balanced[i, k]:
+                for m in range(M):
+                    number[at[i, k, m]] = -1
+
+
+@kernel(inline=True)
+def plain(spots, home, point, W):
+    """w~ of a point of the particle in `spots`."""
+    for m in range(len(W)):
+        W[m] = spots[1][m]
+        for c in range(len(home)):
+            W[m] += spots[2][c, m] * (point[c] - home[c])
+
+
+@kernel
+def fall_short(space, gradient, particles, b, walls, skin, low, high, number, spots, short):
+    """r and sum S w of the marked nodes, from the particles and pieces of body b between `low` and `high`."""
+    at, w, G, _, sign = spots[0], spots[1], spots[2], spots[3], spots[4]
+    D, M, far, home, W = directions(space), len(at), seen(space) * space.h, np.empty(directions(space)), np.empty(len(at))
+    for p in range(particles.x.shape[0]):
+        inside = True
+        for a in range(D):
+            home[a] = particles.x[p, a]
+            inside = inside and low[a] - far < home[a] < high[a] + far
+        if not inside:
+            continue
+        spot(space, gradient, walls, home, spots)
+        V = float(particles.V0[p]) * float(particles.J[p])
+        for m in range(M):
+            n = number[at[m]]
+            if n >= 0:
+                for c in range(D):
+                    short[n, c] += V * G[c, m] * sign[c, m]
+                if hoop(space):
+                    short[n, 0] += V * w[m] / home[0] * sign[0, m]
+    for s in range(skin.first[b], skin.first[b + 1]):
+        inside = skin.area[s] > 0.0
+        for a in range(D):
+            inside = inside and low[a] - far < skin.home[s, a] < high[a] + far
+        if not inside:
+            continue
+        spot(space, gradient, walls, skin.home[s], spots)
+        plain(spots, skin.home[s], skin.x[s], W)
+        for m in range(M):
+            n = number[at[m]]
+            if n >= 0:
+                short[n, D] += skin.area[s] * w[m]
+                for c in range(D):
+                    short[n, c] -= skin.area[s] * skin.normal[s, c] * W[m] * sign[c, m]
+
+
+@kernel
+def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
+    """From w~ to W; left at w~ where the nodes cannot carry it."""
+    at, w, way, sign = spots[0], spots[1], spots[3], spots[4]
+    D, M, out = directions(space), len(at), -1.0 if k == 0 else 1.0
+    system[:] = 0.0
+    system[0, D + 1] = 1.0
+    shift = (contacts.point[i, k] - contacts.home[i, k]) / space.h
+    before, y = W.copy(), np.empty(D + 1)
+    for m in range(M):
+        n = number[at[m]]
+        if short[n, D] > 0.0:
+            for c in range(D):
+                W[m] += out * contacts.normal[i, c] * sign[c, m] * short[n, c] * w[m] / short[n, D]
+        terms(way, shift, space.h, m, y)
+        mass = nodes[at[m], D]
+        for r in range(D + 1):
+            system[r, D + 1] -= W[m] * y[r]
+            for c in range(D + 1):
+                system[r, c] += mass * y[r] * y[c]
+    scale = system[0, 0]
+    for r in range(D + 1):
+        for c in range(D + 1):
+            system[r, c] /= max(scale, 1e-300)
+    if not eliminate(system):
+        W[:] = before
+        return
+    for m in range(M):
+        terms(way, shift, space.h, m, y)
+        for r in range(D + 1):
+            W[m] += nodes[at[m], D] / scale * system[r, D + 1] * y[r]
+
+
+@kernel(inline=True)
+def terms(way, shift, h, m, y):
+    """1 and the way from the contact to node m in cells."""
+    y[0] = 1.0
+    for c in range(len(shift)):
+        y[c + 1] = way[c, m] / h - shift[c]
+
+
+@kernel
+def eliminate(system):
+    """Solve a symmetric positive system in place, the answer in its last column; false where it is singular."""
+    n = system.shape[0]
+    for p in range(n):
+        if not system[p, p] > 1e-12:
+            return False
+        for r in range(n):
+            if r != p:
+                factor = system[r, p] / system[p, p]
+                for c in range(p, n + 1):
+                    system[r, c] -= factor * system[p, c]
+    for p in range(n):
+        system[p, n] /= system[p, p]
+    return True
+
+
+@kernel
+def merge(at, coef):
+    """A node that stands for its ghost too is one node."""
+    for m in range(len(at)):
+        for q in range(m):
+            if at[q] == at[m]:
+                for c in range(coef.shape[0]):
+                    coef[c, q] += coef[c, m]
+                    coef[c, m] = 0.0
+                break

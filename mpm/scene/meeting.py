@@ -1,0 +1,215 @@
+"""Which bodies of a config can meet which walls and each other, and the pieces of surface that they meet by.
+
+A mirror wall (slip, stick, or a side that `walls` does not name) is bonded to the bodies that start at it; the others meet it as contact: without friction,
+at `stick` without sliding. A body can meet what its speed, its weight and its own size could bring it to within the run (`reach`).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mpm.boundary import CONTACT, KINDS
+from mpm.contact.meeting import Meeting
+from mpm.contact.skin import POINT
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import cut_quadrature, shape
+
+AT = 1e-6  # cells: a body that starts nearer to a mirror is bonded to it
+SHARP = 0.3  # sine of the angle between two faces from which on their edge is a corner
+OVERLAP = 0.05  # cells that two bodies may overlap by at the start
+AROUND, APART = 1.5, 4.5  # cells from a wall, and between bodies, within which something may act
+
+
+@dataclass(frozen=True)
+class Meets:
+    """B bodies: see mpm.contact.meeting.Meeting. `any` (B,): whether a body can meet anything."""
+
+    walls: np.ndarray
+    stops: np.ndarray
+    pairs: np.ndarray
+    fields: np.ndarray
+    links: np.ndarray
+
+    @property
+    def any(self) -> np.ndarray:
+        return (self.stops >= 0).any(axis=(1, 2)) | (self.pairs >= 0).any(axis=1) | (self.links > 0).any(axis=1)
+
+
+def plan_meetings(experiment, sides) -> Meets:
+    """What can meet, from the config alone; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
+    names, grid, B = list(experiment.bodies), experiment.grid, len(experiment.bodies)
+    outlines = [shape(body.shape, grid.dimension).moved(np.array(experiment.method.offset) * grid.cell) for body in experiment.bodies.values()]
+    boxes = [outline.bounds() for outline in outlines]
+    travels = [reach(experiment, name, low, high) for name, (low, high) in zip(names, boxes, strict=True)]
+    walls, stops, pairs, links = np.full((B, 3, 2), CONTACT), np.full((B, 3, 2), -1.0), np.full((B, B), -1.0), np.zeros((B, B))
+    for number, side in enumerate(sides):
+        axis, upper, named = number // 2, number % 2, experiment.walls.get(side)
+        kind = type(named).kind if named is not None else "slip"
+        for b, (low, high) in enumerate(boxes):
+            gap = (grid.size[axis] - high[axis] if upper else low[axis]) / grid.cell
+            if side == "axis" or (kind != "contact" and gap <= AT):
+                walls[b, axis, upper] = KINDS[kind]
+            elif kind == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
+                stops[b, axis, upper] = {"contact": getattr(named, "friction", 0.0), "slip": 0.0, "stick": math.inf}[kind]
+    fields = np.zeros(B, np.int64)
+    known = {frozenset(pair.between): pair for pair in experiment.contacts}
+    for b in range(B):
+        welded = [c for c in range(b) if getattr(known.get(frozenset((names[b], names[c]))), "welded", None) is not None]
+        fields[b] = fields[welded[0]] if welded else fields[:b].max(initial=-1) + 1
+        for c in welded[1:]:
+            fields[fields == fields[c]] = fields[b]
+    warm = [experiment.materials[body.material].heat is not None for body in experiment.bodies.values()]
+    for b in range(B):
+        for c in range(B):
+            pair = known.get(frozenset((names[b], names[c])))
+            apart = np.linalg.norm(np.maximum(0.0, np.maximum(boxes[b][0] - boxes[c][1], boxes[c][0] - boxes[b][1])))
+            if b == c or apart >= travels[b].max() + travels[c].max() + APART * grid.cell:
+                continue
+            if fields[b] != fields[c]:
+                pairs[b, c] = friction(pair)
+            if warm[b] and warm[c]:
+                links[b, c] = math.inf if pair is None or pair.conductance is None else pair.conductance
+    fields = np.unique(fields, return_inverse=True)[1]
+    for f in range(fields.max() + 1):  # what is welded to a body at a mirror is behind the same mirror
+        mine = fields == f
+        stops[mine] = np.where((walls[mine] < CONTACT).any(axis=0), -1.0, stops[mine])
+    refuse_overlap(experiment, names, outlines, boxes)
+    refuse_apart(experiment, outlines)
+    found = Meets(walls, stops, pairs, fields, links)
+    refuse_methods(experiment, found)
+    return found
+
+
+def refuse_methods(experiment, meets: Meets) -> None:
+    """SceneError where bodies can meet and the config asks for a method that cannot do it."""
+    names, method = list(experiment.bodies), experiment.method
+    materials = [experiment.materials[body.material] for body in experiment.bodies.values()]
+    for b, c in np.argwhere(meets.pairs >= 0):
+        both = f"{names[b]} and {names[c]} can meet"
+        if type(method.transfer).kind == "xpic":
+            raise SceneError(f"method.transfer: xpic does not know bodies that meet, and {both}: take apic, flip or affine_flip, or weld them under `contacts`")
+        if method.locking is not None:
+            raise SceneError(f"method.locking averages over one body only, and {both}: leave it out, or weld them under `contacts`")
+        if any(one.heating is not None and one.heating.elastic is not None and one.heating.elastic.form == "grid" for one in (materials[b], materials[c])):
+            raise SceneError(f"heating.elastic.form: grid does not know bodies that meet, and {both}: take `particles`, or weld them under `contacts`")
+    for b, c in np.argwhere(meets.links > 0):
+        both = f"{names[b]} and {names[c]} can pass heat where they touch"
+        cure = f"or set `conductance: 0` for the pair: contacts: [{{between: [{names[b]}, {names[c]}], conductance: 0}}]"
+        if type(method.heat).kind in ("explicit", "stabilised"):
+            raise SceneError(f"method.heat: {both}, which takes implicit steps: auto or implicit, {cure}")
+        for one in (materials[b], materials[c]):
+            if type(one.heat.alpha).kind != "constant":
+                raise SceneError(f"heat.alpha: {both}, which is known for constant alpha only: a number, {cure}")
+
+
+def refuse_apart(experiment, outlines) -> None:
+    """SceneError where welded bodies do not touch at the start."""
+    names, h = list(experiment.bodies), experiment.grid.cell
+    for index, pair in enumerate(experiment.contacts):
+        if pair.welded is None:
+            continue
+        a, b = (outlines[names.index(name)] for name in pair.between)
+        low, high = a.bounds()
+        edges = [np.linspace(p, q, max(2, int((q - p) / (0.25 * h)))) for p, q in zip(low, high, strict=True)]
+        gap = float(np.min(np.abs(b.distance(cut_quadrature(a, edges, 2)[1].x))))
+        if gap > OVERLAP * h:
+            raise SceneError(f"contacts[{index}]: {' and '.join(pair.between)} are to be welded and lie {gap / h:.2g} cells apart: let them touch at the start")
+
+
+def friction(pair) -> float:
+    """Of an entry under `contacts`; none where a pair is not named."""
+    if pair is None:
+        return 0.0
+    return math.inf if pair.stick is not None else pair.friction
+
+
+def reach(experiment, name: str, low, high) -> np.ndarray:
+    """How far a body could come towards either side of each direction within the run (D, 2) [m]: thrown, falling, or by changing its shape."""
+    end, size = experiment.time.end, float(np.max(high - low))
+    body, material = experiment.bodies[name], experiment.materials[experiment.bodies[name].material]
+    speed = max(math.hypot(*(one.velocity or (0.0,))) + (spun(one) if len(experiment.bodies) > 1 else 0.0) for one in experiment.bodies.values())
+    g = np.array(experiment.gravity) if experiment.gravity is not None else np.zeros(len(low))
+    loaded = any(load.traction is not None for load in experiment.loads if load.of == name)
+    if g.any() and material.flow is not None:
+        return np.full((len(low), 2), math.inf)
+    swells = material.flow is not None or getattr(material.expansion, "kind", "") == "latched"
+    stirred = g.any() or speed or loaded or material.expansion is not None or body.angular_velocity is not None
+    shapes = (2.0 if swells else 0.5) * size if stirred else 0.0
+    return shapes + speed * end + 0.5 * end * end * np.maximum(0.0, np.stack([-g, g], axis=1))
+
+
+def spun(body) -> float:
+    """Speed of the farthest point of a body's box by its rotation, at most [m/s]."""
+    omega = body.angular_velocity
+    if omega is None:
+        return 0.0
+    low, high = shape(body.shape).bounds()
+    return float(np.linalg.norm(omega) * np.linalg.norm(np.subtract(high, low)))
+
+
+def refuse_overlap(experiment, names, outlines, boxes) -> None:
+    """SceneError where two bodies overlap by more than OVERLAP cells at the start: looked for on lines through the cells' middles of their common box."""
+    h = experiment.grid.cell
+    for b in range(len(names)):
+        for c in range(b):
+            low, high = np.maximum(boxes[b][0], boxes[c][0]), np.minimum(boxes[b][1], boxes[c][1])
+            if np.any(high - low <= OVERLAP * h):
+                continue
+            counts = np.minimum(np.ceil((high - low) / (0.1 * h)).astype(int) + 1, 60 if len(low) > 2 else 400)
+            axes = [np.linspace(p, q, n) for p, q, n in zip(low, high, counts, strict=True)]
+            points = np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=-1)
+            depth = np.minimum(-outlines[b].distance(points), -outlines[c].distance(points))
+            if depth.max() > 0.5 * OVERLAP * h:
+                place = ", ".join(f"{1e3 * x:.4g}" for x in points[int(np.argmax(depth))])
+                raise SceneError(f"bodies {names[c]} and {names[b]} overlap at the start by {2 * depth.max() / h:.2g} cells near ({place}) mm: there would be "
+                                 "mass twice; move one of them")  # fmt: skip
+
+
+def meeting(meets: Meets, space, bodies, surroundings) -> Meeting:
+    """What the run keeps of it; hot walls that a body is not bonded to act while it touches them."""
+    met = Meeting(space, tuple(bodies), meets.walls, meets.stops, meets.pairs, meets.fields, meets.links)
+    met.warms = bool((met.links > 0).any())
+    for b, around in enumerate(surroundings):
+        if around is not None:
+            around.walls = [replace(wall, touched=met.touched(b, 2 * wall.axis + wall.side)) if met.walls[b, wall.axis, wall.side] == CONTACT else wall
+                            for wall in around.walls]  # fmt: skip
+            met.warms = met.warms or any(wall.touched is not None for wall in around.walls)
+    return met
+
+
+def cornered(cut, h: float):
+    """The cut cells with a piece of next to no area at every edge and corner: where the faces of a particle's pieces intersect."""
+    D = cut.centroid.shape[1]
+    order = np.argsort(cut.owner, kind="stable")
+    begins = np.flatnonzero(np.diff(cut.owner[order], prepend=-1))
+    owner, point, normal = [], [], []
+    for mine in np.split(order, begins[1:]) if len(order) else []:
+        if len(mine) < 2 or D == 1:
+            continue
+        for group in groups(cut.normal[mine]):
+            N, x = cut.normal[mine[group]], cut.point[mine[group]]
+            middle = x.mean(axis=0)
+            corner = middle + np.linalg.lstsq(N, np.sum(N * (x - middle), axis=1), rcond=None)[0]
+            mean = N.sum(axis=0)
+            if np.linalg.norm(corner - middle) < 1.5 * h and np.linalg.norm(mean) > 0.1:
+                owner.append(cut.owner[mine[0]])
+                point.append(corner)
+                normal.append(mean / np.linalg.norm(mean))
+    if not owner:
+        return cut
+    n = len(owner)
+    return replace(cut, owner=np.concatenate([cut.owner, owner]), area=np.concatenate([cut.area, np.full(n, POINT * h ** (D - 1))]),
+                   point=np.concatenate([cut.point, point]), normal=np.concatenate([cut.normal, normal]),
+                   side=np.concatenate([cut.side, np.full(n, cut.side.max(initial=0) + 1)]))  # fmt: skip
+
+
+def groups(normal: np.ndarray):
+    """Pairs of faces that make an edge, and in three directions triples that make a corner."""
+    from itertools import combinations
+
+    for number in range(2, normal.shape[1] + 1):
+        for group in combinations(range(len(normal)), number):
+            singular = np.linalg.svd(normal[list(group)], compute_uv=False)
+            if singular[-1] > SHARP * 0.5:
+                yield list(group)
