@@ -8,28 +8,30 @@ import typer
 from mpm_cli.options import Json, Set, Threads, load
 from mpm_cli.talk import document, say, warn
 
-Config = Annotated[Path | None, typer.Argument(metavar="[CONFIG]", help="YAML file of an experiment; without it, a thrown cube.", show_default=False)]
+Config = Annotated[
+    Path | None, typer.Argument(metavar="[CONFIG]", help="YAML file of an experiment. Without it, a cube that is thrown through a box.", show_default=False)
+]
 
 
 def bench(
     config: Config = None,
-    n: Annotated[int, typer.Option("--n", min=12, help="Cells of the unit box a direction.")] = 64,
-    particles: Annotated[int, typer.Option("--np", min=1, help="About how many particles.")] = 100_000,
-    ppc: Annotated[int, typer.Option("--ppc", min=0, help="Particles a cell; 0: 8 in three dimensions, 4 in two.")] = 0,
-    dim: Annotated[int, typer.Option("--dim", min=2, max=3, help="Dimensions.")] = 3,
+    n: Annotated[int, typer.Option("--n", min=12, help="Cells along each side of the unit box.")] = 64,
+    particles: Annotated[int, typer.Option("--np", min=1, help="Approximate number of particles.")] = 100_000,
+    ppc: Annotated[int, typer.Option("--ppc", min=0, help="Particles per cell; 0 means 8 in three dimensions and 4 in two.")] = 0,
+    dim: Annotated[int, typer.Option("--dim", min=2, max=3, help="Number of dimensions.")] = 3,
     dtype: Annotated[Literal["f32", "f64"], typer.Option("--dtype", help="Precision.")] = "f32",
     threads: Threads = 1,
-    warm: Annotated[int, typer.Option("--warm", min=1, help="Untimed steps.")] = 10,
-    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of a timed block.")] = 10,
-    reps: Annotated[int, typer.Option("--reps", min=1, help="Timed blocks.")] = 9,
-    order: Annotated[Literal["lattice", "shuffle"], typer.Option("--order", help="Order of the particles at the start.")] = "lattice",
+    warm: Annotated[int, typer.Option("--warm", min=1, help="Steps before timing starts.")] = 10,
+    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps in each timed block.")] = 10,
+    reps: Annotated[int, typer.Option("--reps", min=1, help="Number of timed blocks.")] = 9,
+    order: Annotated[Literal["lattice", "shuffle"], typer.Option("--order", help="Initial order of the particles in memory.")] = "lattice",
     set_: Set = None,
     as_json: Json = False,
 ) -> None:
-    """Throughput on this machine: of the scene that other codes are timed on, or of a config, by phase and by physics.
+    """Measure throughput on this machine: of the scene on which other codes are timed, or of a config, by phase and by physics.
 
-    Without CONFIG, one JSON line with the fields of other codes' programs. Compare whole runs in turn, pinned to one core of an idle machine, three rounds
-    or more, by ratios of medians, and only where `check` agrees.
+    Without CONFIG it prints one JSON line, with the same fields as the timing programs of other codes. To compare codes, alternate whole runs on one core
+    of an idle machine, use three rounds or more, take ratios of medians, and check first that `check` agrees.
     """
     if config is None:
         from mpm.integrate.order import SHARED

@@ -11,7 +11,7 @@ from mpm_cli.talk import document, internal, say
 Configs = Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="YAML files of experiments.", show_default=False)]
 TO = "Folder for results.  [default: results/<config name>-chart]"
 Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", parser=folder, help=TO, show_default=False)]
-BESIDE = "Another program, timed in every round; it prints JSON lines {peer, seconds, error}."
+BESIDE = "Another program to time in every round; it must print JSON lines {peer, seconds, error}."
 Peer = Annotated[list[str] | None, typer.Option(metavar="NAME=COMMAND", help=BESIDE, show_default=False)]
 
 
@@ -21,18 +21,21 @@ def chart(
     out: Out = None,
     jobs: Jobs = "auto",
     set_: Set = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Three places a path, three rounds, compiling not timed: under two minutes once compiled.")] = False,
-    compiling: Annotated[bool, typer.Option(help="Time compilation too, each kind of method in a fresh process: 10 to 25 s a kind.")] = True,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Three resolutions a method, three rounds, compilation not timed: under two minutes once compiled.")
+    ] = False,
+    compiling: Annotated[bool, typer.Option(help="Also time compilation, for each kind of method in a fresh process: 10 to 25 s each.")] = True,
     peer: Peer = None,
-    timeout: Annotated[float | None, limit("Stop a setting after this long: 90, 90s, 5min, 2h.")] = None,
+    timeout: Annotated[float | None, limit("Time limit per setting, e.g. 90, 90s, 5min or 2h.")] = None,
     max_runs: MaxRuns = 10_000,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Speed against accuracy: error, time and the Pareto front over methods and resolutions.
+    """Measure speed against accuracy: error, time and the Pareto front over methods and resolutions.
 
-    Of the config's `chart:`, else of its sweep's numerical axes, else the usual methods of its physics; against `exact:`, else a Richardson limit.
-    Writes OUT/chart.nc and OUT/chart.png, and says the cheapest setting for 10 %, 1 % and 0.1 %. The same command again goes on.
+    The methods are those of the config's `chart:` section, otherwise of its sweep's numerical axes, otherwise the usual ones for its physics. Errors are
+    measured against `exact:`, otherwise against a Richardson limit. Writes OUT/chart.nc and OUT/chart.png, and prints the cheapest setting for errors of
+    10 %, 1 % and 0.1 %. Repeat the command to continue.
     """
     if out is not None and len(configs) > 1:
         raise typer.BadParameter("--out holds one chart; leave it out for several configs")

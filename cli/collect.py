@@ -12,9 +12,9 @@ Target = Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", pars
 
 
 def collect(out: Folder, target: Target = None, as_json: Json = False) -> None:
-    """Assemble OUT/sweep.nc from what is there.
+    """Assemble OUT/sweep.nc from the finished points.
 
-    Also while a sweep runs: what has not run is `pending`.
+    This works while the sweep is running, too: points that have not run have the status `pending`.
     """
     from mpm.sweep.api import collect_folder
 

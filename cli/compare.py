@@ -7,7 +7,7 @@ import typer
 from mpm_cli.options import Json
 from mpm_cli.talk import document, say
 
-Place = Annotated[Path, typer.Argument(help="Dataset, or the folder of one.", show_default=False)]
+Place = Annotated[Path, typer.Argument(help="Dataset file, or the folder that holds it.", show_default=False)]
 
 
 def compare(
@@ -17,9 +17,9 @@ def compare(
     atol: Annotated[float, typer.Option(min=0, help="Absolute tolerance.")] = 0.0,
     as_json: Json = False,
 ) -> None:
-    """Tell whether two datasets hold the same.
+    """Compare the results of two datasets.
 
-    Wall times, attempts and provenance do not count. Exit code 0: same, 1: different.
+    Wall times, attempts and provenance are ignored. Exit codes: 0 the same; 1 different.
     """
     from mpm.sweep.compare import compare as differences
 

@@ -5,7 +5,7 @@ from mpm_cli.talk import document, say
 
 
 def info(as_json: Json = False) -> None:
-    """Versions, source, machine, threads, cache."""
+    """Print versions, source hash, machine, threads and compile cache, for a bug report."""
     from mpm import linking
     from mpm.jit import CACHE
     from mpm.records.provenance import git_revision, machine, source_hash, versions

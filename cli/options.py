@@ -55,22 +55,28 @@ def folder(text: str) -> Path:
     return Path(text)
 
 
-Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of the experiment.", show_default=False)]
+Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file that describes the experiment.", show_default=False)]
 Folder = Annotated[Path, typer.Argument(metavar="OUT", parser=folder, help="Folder of a sweep.", show_default=False)]
 TO = "Folder for results.  [default: results/<config name>]"
 Out = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", parser=folder, help=TO, show_default=False)]
-Jobs = Annotated[int, typer.Option("-j", "--jobs", metavar="N|auto", parser=workers, help="Worker processes; auto is one a core.")]
-Set = Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Set a parameter; repeat for more.", show_default=False)]
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, talk on stderr.")]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Say only what went wrong.")]
-MaxRuns = Annotated[int, typer.Option("--max-runs", metavar="N", min=1, help="Refuse sweeps of more points.")]
+Jobs = Annotated[int, typer.Option("-j", "--jobs", metavar="N|auto", parser=workers, help="Number of worker processes; auto starts one for each core.")]
+Set = Annotated[
+    list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Set one parameter of the config; repeat the option to set more.", show_default=False)
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout; messages go to stderr.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print only errors and failures.")]
+MaxRuns = Annotated[int, typer.Option("--max-runs", metavar="N", min=1, help="Largest number of points that a sweep may have.")]
 Tolerance = Annotated[
     float | None,
-    typer.Option("--tol", metavar="TOL", parser=share, show_default=False, help="An error that would do, such as 1%: pilots are run, and a model is chosen."),
+    typer.Option(
+        "--tol", metavar="TOL", parser=share, show_default=False, help="Largest acceptable error, e.g. 1%. Runs coarse pilots and chooses a model and method."
+    ),
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Warnings are exit code 3.")]
-Smoke = Annotated[bool, typer.Option("--smoke", help="Coarse and short: apply the config's smoke section.")]
-Threads = Annotated[int, typer.Option("--threads", metavar="N", min=1, help="Threads of one large run; the result is the same, bit for bit, for any number.")]
+Strict = Annotated[bool, typer.Option("--strict", help="End with exit code 3 if any point has warnings.")]
+Smoke = Annotated[bool, typer.Option("--smoke", help="Make the run coarse and short: apply the config's smoke section.")]
+Threads = Annotated[
+    int, typer.Option("--threads", metavar="N", min=1, help="Number of threads for one large run. The result does not depend on it, bit for bit.")
+]
 
 
 def limit(help_: str) -> Any:
@@ -78,7 +84,7 @@ def limit(help_: str) -> Any:
     return typer.Option(metavar="T", parser=seconds, show_default=False, help=help_)
 
 
-KEEP = "How often a running point saves a checkpoint, from which a killed one goes on.  [default: 1min]"
+KEEP = "Time between two checkpoints of a running point; a killed point continues from its last one.  [default: 1min]"
 Checkpoints = Annotated[float | None, limit(KEEP)]
 
 

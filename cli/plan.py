@@ -18,11 +18,11 @@ def plan(
     as_json: Json = False,
     tol: Tolerance = None,
 ) -> None:
-    """Say what a sweep would do.
+    """Print what a sweep would do, without running it.
 
-    Points and which are there, the physics that is compiled, time-step limits and which binds, dimensionless groups, smaller models and what they would
-    save, time, memory and bytes. Runs nothing, but with --tol pilots: coarse runs that measure what a smaller model would be off by, and that choose
-    basis, transfer, cell, particles and step: the method from the charted fronts (mpm chart), the cell from the pilots.
+    Lists the points and which of them are finished, the physics that will be compiled, the time-step limits and which one applies, dimensionless groups,
+    smaller models and what they would save, and estimates of time, memory and output. With --tol it runs coarse pilots: they measure the error of
+    smaller models and choose basis, transfer, cell, particles and step (the method from the results of mpm chart, the cell from the pilots).
     """
     from mpm.sweep.outlook import outlook, said
 

@@ -10,9 +10,14 @@ from mpm_cli.talk import say
 
 def plot(
     out: Folder,
-    names: Annotated[list[str] | None, typer.Argument(metavar="[NAME...]", help="Which figures.  [default: overview]", show_default=False)] = None,
-    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", parser=folder, help="File of a single figure.", show_default=False)] = None,
-    svg: Annotated[bool, typer.Option("--svg", help="Write OUT/<name>.svg rather than .png.")] = False,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME...]", help="Figures to draw: overview, series, finals, snapshot.  [default: overview]", show_default=False),
+    ] = None,
+    path: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", parser=folder, help="File for the figure, if there is only one.", show_default=False)
+    ] = None,
+    svg: Annotated[bool, typer.Option("--svg", help="Write OUT/<name>.svg instead of .png.")] = False,
 ) -> None:
     """Draw figures of a sweep as PNG or SVG."""
     from mpm.plots import figures

@@ -25,8 +25,8 @@ def run(
 ) -> None:
     """Run one point to OUT/run.nc.
 
-    Of a config with a sweep it is the first; --set chooses another. The same command again does nothing where the point is finished, and goes on from the
-    checkpoint where it was stopped or killed. A sweep over the same folder shares its points.
+    If the config has a sweep, this is its first point; --set selects another. Repeat the command to continue a stopped or killed run from its checkpoint;
+    it does nothing if the point is finished. A sweep into the same folder uses the point too.
     Exit codes: 0 ok; 2 usage or config; 3 warnings, with --strict; 4 the point failed; 130 Ctrl-C; 143 SIGTERM.
     """
     from mpm import compiling

@@ -20,9 +20,9 @@ def stability(
 ) -> None:
     """Map where a method fails, past its limits.
 
-    The config's `stability:` section names two axes, panels (methods) and lines of theory. Along the vertical axis the boundary is bracketed, then
-    refined, in rounds of an ordinary sweep: OUT/sweep.nc has every point, OUT/stability.nc the boundaries, OUT/stability.png the map. The same command
-    again goes on, or does nothing. Exit codes: 0 mapped, failures included; 2 usage or config; 75, 130, 143 stopped.
+    The config's `stability:` section names two axes, panels (methods) and lines of theory. The boundary along the vertical axis is bracketed and then
+    refined, in rounds of an ordinary sweep. OUT/sweep.nc holds every point, OUT/stability.nc the boundaries, OUT/stability.png the map. Repeat the
+    command to continue. Exit codes: 0 the map is complete (its points may fail); 2 usage or config; 75, 130, 143 stopped.
     """
     from mpm.study.boundary import sentences
     from mpm.study.stability import run

@@ -5,9 +5,9 @@ from mpm_cli.talk import document, say
 
 
 def status(out: Folder, as_json: Json = False) -> None:
-    """Say what a sweep's folder holds.
+    """Print what a sweep's folder holds.
 
-    Counts, failures grouped by reason, slowest points, points that other source made, who is at work there.
+    Counts by status, failures grouped by reason, the slowest points, results from other source code, and the process that is working there.
     """
     from mpm.sweep.status import said
     from mpm.sweep.status import status as status_of

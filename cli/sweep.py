@@ -31,11 +31,11 @@ def address(text: str) -> str:
     return text
 
 
-MEMORY = "Most memory of a point, as 4GB: refused before it starts, ended while it runs.  [default: what is free]"
-SCHEDULER = "Run on a Dask cluster, as tcp://host:8786; local starts one on 127.0.0.1 with JOBS workers."
-RESULTS = "From a cluster: over the wire, or through OUT where all workers see it under the same path."
-AGAIN = "Run finished points again: those that are not ok; those that other source made; all."
-RETRIES = "Tries again of a killed or timed-out point.  [default: 3 killed, 0 timed out]"
+MEMORY = "Memory limit per point, e.g. 4GB. A point estimated above it is not started; a running point above it is killed.  [default: free memory]"
+SCHEDULER = "Run on the Dask cluster at this address, e.g. tcp://host:8786; local starts a cluster on 127.0.0.1 with JOBS workers."
+RESULTS = "How a cluster returns results. wire: over the network; shared: workers write into OUT, which all of them see under one path."
+AGAIN = "Rerun finished points. failed: every point that is not ok; stale: results from other source code; all: everything."
+RETRIES = "Retries of a killed or timed-out point.  [default: 3 if killed, 0 if timed out]"
 Rerun = Annotated[str | None, typer.Option(metavar="failed|stale|all", parser=which, help=AGAIN, show_default=False)]
 
 
@@ -46,9 +46,9 @@ def sweep(
     jobs: Jobs = "auto",
     set_: Set = None,
     rerun: Rerun = None,
-    timeout: Annotated[float | None, limit("Stop a point after this long: 90, 90s, 5min, 2h.")] = None,
+    timeout: Annotated[float | None, limit("Time limit per point, e.g. 90, 90s, 5min or 2h.")] = None,
     retries: Annotated[int | None, typer.Option(metavar="N", min=0, help=RETRIES, show_default=False)] = None,
-    time_budget: Annotated[float | None, limit("Stop the sweep after this long; run again to go on.")] = None,
+    time_budget: Annotated[float | None, limit("Stop the sweep after this time; the same command continues it.")] = None,
     checkpoint: Checkpoints = None,
     fail_fast: Annotated[bool, typer.Option("--fail-fast", help="Stop at the first point that is not ok.")] = False,
     max_failures: Annotated[int | None, typer.Option(metavar="N", min=1, help="Stop after N points that are not ok.", show_default=False)] = None,
@@ -56,7 +56,7 @@ def sweep(
     memory: Annotated[float | None, typer.Option(metavar="SIZE", parser=amount, help=MEMORY, show_default=False)] = None,
     scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", parser=address, help=SCHEDULER, show_default=False)] = None,
     results: Annotated[str, typer.Option(metavar="wire|shared", parser=route, help=RESULTS)] = "wire",
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; say what would be done (as mpm plan).")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Run nothing; print what would be done, as mpm plan does.")] = False,
     smoke: Smoke = False,
     strict: Strict = False,
     as_json: Json = False,
@@ -64,9 +64,9 @@ def sweep(
 ) -> None:
     """Run every missing point and assemble OUT/sweep.nc.
 
-    Points run over processes; the same command again goes on, or does nothing where all is there.
+    Points run in worker processes. Repeat the command to continue a stopped sweep; it does nothing if every point is finished.
     Exit codes: 0 all ok; 2 usage or config; 3 some points failed (or have warnings, with --strict); 4 every point failed; 75 time budget reached; 130 Ctrl-C;
-    143 SIGTERM.
+    143 SIGTERM; 141 all ok, but the reader of the output left.
     """
     if dry_run:
         from mpm_cli.plan import plan
@@ -145,15 +145,15 @@ def words(result: Any, picture: Any, command: str) -> list[str]:
     told = [f"{counts_told(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
     told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None and path.exists()]
     if result.hurried and not result.collected and result.ran:
-        told.append(f"there was no time to collect what ran: `mpm collect {result.out}` does, and so does the next sweep")
+        told.append(f"Stopped before the dataset was updated; run `mpm collect {result.out}` (the next sweep also updates it).")
     if result.counts["pending"]:
         left = f"{result.counts['pending']} point{'s are' if result.counts['pending'] > 1 else ' is'} left"
         told.append(f"{left}; to go on: {command}")
     bad = sum(result.counts[name] for name in ("failed", "timeout", "killed", "diverged"))
     if bad:
-        told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` groups the reasons, --rerun failed tries them again")
+        told.append(f"{bad} point{'s are' if bad > 1 else ' is'} not ok: `mpm status {result.out}` lists the reasons; --rerun failed runs them again")
     if result.warned:
-        told.append(f"warnings: `mpm status {result.out}` names a point of each kind; `warnings` in the dataset says what was seen")
+        told.append(f"warnings: `mpm status {result.out}` names a point for each kind; the variable `warnings` of the dataset gives the details")
     if result.exit_code == 1:
         warn(f"stopped: {result.stopped}")
     return told

@@ -7,14 +7,14 @@ from mpm_cli.options import Folder, Jobs, Json, Quiet
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, say
 
-Check = Annotated[bool, typer.Option("--check", help="Only look: set nothing aside, run nothing.")]
+Check = Annotated[bool, typer.Option("--check", help="Only check: rename nothing and run nothing.")]
 
 
 def verify(out: Folder, check: Check = False, jobs: Jobs = "auto", as_json: Json = False, quiet: Quiet = False) -> None:
     """Check every file of a folder against its checksum.
 
-    A damaged file is set aside (nothing is deleted), its points run again, and the dataset is made anew.
-    Exit codes: 0 all sound, or sound again; 1 something is damaged still; 2 usage, or the folder is in use.
+    A damaged file is renamed (nothing is deleted), its points are run again, and the dataset is rebuilt.
+    Exit codes: 0 all files are sound, or have been repaired; 1 something is still damaged; 2 usage, or the folder is in use.
     """
     from mpm.sweep.engine import Options
     from mpm.sweep.verify import said

@@ -162,7 +162,7 @@ class Builder:
                 try:
                     value = joined(event.value)
                 except ValueError as error:
-                    self.report(line, column, f"{error}, which no file can hold as text", allowed="letters")
+                    self.report(line, column, f"{error}, which no file can hold as text", allowed="text without it")
                     bad, value = True, BAD
             if not bad and event.style is None and not is_key:
                 try:
@@ -290,5 +290,5 @@ def letters(text: str, origin: Origin, problems: list[Problem], path: tuple) -> 
     try:
         return joined(text)
     except ValueError as error:
-        problems.append(origin.problem(0, 0, ".".join(map(str, path)), f"{error}, which no file can hold as text", allowed="letters"))
+        problems.append(origin.problem(0, 0, ".".join(map(str, path)), f"{error}, which no file can hold as text", allowed="text without it"))
         return BAD

@@ -8,6 +8,7 @@ import io
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -211,7 +212,14 @@ def tree_of(source: Any) -> Any:
 
 def run(experiment: Any, beat: Callable[[float, float], bool] | None = None, threads: int = 1) -> Any:
     """`mpm.run`: the first point as an xarray.DataTree (/, series, grid, particles). A point that fails is `status` 4 with its `error`, not an exception."""
+    caution(experiment)
     return tree_of(run_one(experiment, beat, threads=threads)[0])
+
+
+def caution(experiment: Any) -> None:
+    """A Python warning for what is valid in the config and seldom meant; the shell has lines of its own."""
+    for text in experiment.cautions:
+        warnings.warn(text, stacklevel=3)
 
 
 def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "auto", max_runs: int = 10_000, reporter: Any = None, **more: Any) -> Any:
@@ -224,6 +232,7 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
     """
     if out is not None and not str(out).strip():
         raise Refused("out is empty; name a folder")
+    caution(experiment)
     options = Options(jobs=cores() if jobs == "auto" else int(jobs), **more)
     result = execute(experiment, Path(out) if out is not None else None, options, reporter, max_runs)
     if result.stopped in ("interrupted", "terminated"):
