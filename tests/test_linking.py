@@ -73,6 +73,32 @@ def test_from_the_cache_nothing_is_compiled_and_all_bits_are_the_same(cold):
     assert again["series"] == first["series"] and again["seconds"] == 0.0 and again["said"] == []
 
 
+THREADS = """
+import copy, json, sys, threading
+import mpm
+import mpm.runner, mpm.rigid, mpm.sweep.collect
+scene = json.load(sys.stdin)
+rigid = copy.deepcopy(scene)
+del rigid["materials"]["m"]["elastic"], rigid["materials"]["m"]["expansion"]
+found = {}
+def go(name, config):
+    tree = mpm.run(mpm.load(config))
+    found[name] = {key: [value.hex() for value in tree["series"][key].values.astype(float).ravel().tolist()] for key in tree["series"].data_vars}
+both = [threading.Thread(target=go, args=pair) for pair in (("moving", scene), ("rigid", rigid), ("again", scene))]
+[one.start() for one in both], [one.join() for one in both]
+print(json.dumps(found))
+"""
+
+
+@pytest.mark.slow
+def test_threads_that_compile_at_once_get_the_same_bits(cold, tmp_path):
+    env = os.environ | {"MPM_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", THREADS], cwd=ROOT, env=env, input=json.dumps(SCENE), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    found = json.loads(done.stdout)
+    assert set(found) == {"moving", "rigid", "again"} and found["moving"] == found["again"] == cold[1]["series"]
+
+
 @pytest.mark.slow
 def test_numba_of_another_version_compiles_its_own_way_says_so_and_agrees_to_round_off(cold, tmp_path):
     other = run(tmp_path, version="9.9.9")
