@@ -92,6 +92,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (output.exact, once),
     (point.grid, once),
     (point.body, each("bodies")),
+    (point.exchange, each("surfaces")),
     (point.alone, once),
     (point.loading, once),
     (point.stages, once),

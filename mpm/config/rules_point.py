@@ -3,9 +3,12 @@
 from collections.abc import Iterator
 from typing import Any
 
+from mpm.config.boundary import EXCHANGES
 from mpm.config.explain import Finding
 from mpm.config.quantities import Length, PerLength
 from mpm.config.rules_scene import heats, moves
+
+EXCHANGED = {"convection": "outside", "fixed": "temperature"}  # what a material point has, and the field of the temperature that it meets
 
 
 def lacks(path: tuple, wanted: Any) -> Finding:
@@ -55,6 +58,19 @@ def loading(experiment: Any) -> Iterator[Finding]:
                 yield Finding(("loading", index, key), "the body is rigid", "an elastic section in its material", on_key=True)
         if stage.temperature is not None and not heats(experiment):
             yield Finding(("loading", index, "temperature"), "the body has no heat", "a heat section in its material", on_key=True)
+
+
+def exchange(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """A material point meets what is constant, by a coefficient."""
+    if experiment.grid.dimension != 0:
+        return
+    for kind in EXCHANGES:
+        if getattr(item, kind) is not None and kind not in EXCHANGED:
+            said = f"a material point has no {kind}; its temperature may be prescribed in `loading`"
+            yield Finding(("surfaces", index, kind), said, list(EXCHANGED), on_key=True)
+        elif getattr(item, kind) is not None and not isinstance(outside := getattr(getattr(item, kind), EXCHANGED[kind]), float):
+            said = "what a material point meets is constant; a temperature over time may be prescribed in `loading`"
+            yield Finding(("surfaces", index, kind, EXCHANGED[kind]), said, "a number", given=type(outside).kind)
 
 
 def alone(experiment: Any) -> Iterator[Finding]:

@@ -6,38 +6,34 @@ from mpm.heat.exchange import PENALTY
 from mpm.heat.programmes import Sine, bounds
 from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
+from mpm.scene.menus import acting, known
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
+
+PROGRAMMES = {
+    "table": lambda model: table(model.time, model.value, model.interpolation),
+    "sine": lambda model: Sine(model.mean, model.amplitude, model.period, model.phase),
+}
 
 
 def programme(model):
     """The run-time programme of a config's: a number, a table over time or a sine."""
     if isinstance(model, float | int):
         return float(model)
-    if type(model).kind == "table":
-        return table(model.time, model.value, model.interpolation)
-    return Sine(model.mean, model.amplitude, model.period, model.phase)
+    return known(PROGRAMMES, type(model).kind, "programme")(model)
 
 
 def robin(entry):
     """[(beta, outside)] of a surface entry: convection, or a fixed temperature (beta = inf); a list, empty where it has neither."""
-    found = []
-    if entry.convection is not None:
-        found.append((entry.convection.beta, programme(entry.convection.outside)))
-    if entry.fixed is not None:
-        found.append((float("inf"), programme(entry.fixed.temperature)))
-    return found
+    return [(part.rate, programme(part.outside)) for part in acting(entry, "robin")]
 
 
 def acts_of(entry, pieces) -> list[Act]:
     """What one surface entry does to `pieces`."""
     acts = [Act(pieces, beta=beta, outside=outside) for beta, outside in robin(entry) if beta > 0]
-    if entry.flux is not None and entry.flux.q != 0:
-        acts.append(Act(pieces, flux=entry.flux.q))
-    if entry.radiation is not None and entry.radiation.emissivity > 0:
-        acts.append(Act(pieces, emissivity=entry.radiation.emissivity, sky=programme(entry.radiation.surroundings)))
-    return acts
+    acts += [Act(pieces, flux=part.rate) for part in acting(entry, "flux") if part.rate != 0]
+    return acts + [Act(pieces, emissivity=part.rate, sky=programme(part.outside)) for part in acting(entry, "grey") if part.rate > 0]
 
 
 def hot_walls(experiment, sides) -> list[HotWall]:

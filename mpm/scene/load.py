@@ -3,6 +3,7 @@
 import numpy as np
 
 from mpm.basis import inverse_moment
+from mpm.scene.menus import pulling
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side
 from mpm.state import Load, NoSource
@@ -12,8 +13,7 @@ from mpm.transfer import uses_basis_gradient
 def loaded(experiment, name: str, cut, space, gradient):
     """The Load of one body; NoSource where nothing acts on it."""
     entries = [entry for entry in experiment.loads if entry.of == name]
-    tractions = [entry for entry in entries if entry.traction is not None]
-    rate = sum(entry.drag.rate for entry in entries if entry.drag is not None)
+    tractions, rate = pulling(entries)
     if not tractions and rate == 0:
         return NoSource()
     ramps = {entry.traction.ramp for entry in tractions}
@@ -32,4 +32,4 @@ def loaded(experiment, name: str, cut, space, gradient):
     scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
     held = np.tile(np.eye(D), (N, 1, 1))
     carries = np.any(force != 0, axis=1) | np.any(dipole != 0, axis=(1, 2))
-    return Load(force, dipole, held, carries, np.zeros(N), max(ramps, default=0.0), float(rate), float(scale))
+    return Load(force, dipole, held, carries, np.zeros(N), max(ramps, default=0.0), rate, float(scale))

@@ -12,6 +12,7 @@ from mpm.point.state import RATE, NoConduction, Rigid
 from mpm.scene.build import SceneError, elastic_law, expansion_law, output_times
 from mpm.scene.inventory import output_bytes, physics
 from mpm.scene.law import law
+from mpm.scene.menus import acting
 from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
 
 AXES = ("xx", "yy", "zz")
@@ -181,11 +182,7 @@ def lumped(experiment, name: str, body):
 
 def exchanges(surface) -> list[tuple[float, float]]:
     """(beta, temperature outside) of a surface."""
-    found = [(surface.convection.beta, surface.convection.outside)] if surface.convection is not None else []
-    found += [(math.inf, surface.fixed.temperature)] if surface.fixed is not None else []
-    if surface.flux is not None or surface.radiation is not None or not all(isinstance(out, float) for _, out in found):
-        raise SceneError("a material point exchanges by convection or a fixed temperature, constant in time: prescribe its temperature in `loading` instead")
-    return found
+    return [(part.rate, part.outside) for part in acting(surface, "robin")]  # nothing else, and nothing that changes: config/rules_point.py
 
 
 def estimate(experiment) -> dict:

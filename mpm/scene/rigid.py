@@ -10,6 +10,7 @@ from mpm.observe import merged, near
 from mpm.scene.build import SceneError, output_times, watch
 from mpm.scene.exchange import must_conduct, programme, robin
 from mpm.scene.law import law
+from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 from mpm.warned import warning
@@ -31,8 +32,8 @@ def rigid_bodies(experiment, field=None) -> list:
             raise SceneError(f"materials.{body.material} has neither `elastic` nor `heat`: nothing would happen in {name}")
         entries = [entry for entry in experiment.surfaces if entry.of == name]
         surfaces = tuple((entry.side, beta, outside) for entry in entries for beta, outside in robin(entry))
-        fluxes = tuple((entry.side, entry.flux.q) for entry in entries if entry.flux is not None)
-        radiation = tuple((e.side, e.radiation.emissivity, programme(e.radiation.surroundings)) for e in entries if e.radiation is not None)
+        fluxes = tuple((entry.side, part.rate) for entry in entries for part in acting(entry, "flux"))
+        radiation = tuple((entry.side, part.rate, programme(part.outside)) for entry in entries for part in acting(entry, "grey"))
         outline = shape(body.shape, experiment.grid.dimension)
         kappa, alpha = law(material.heat.kappa), law(material.heat.alpha)
         around = [outside for _, beta, outside in surfaces if beta > 0] + [sky for _, emissivity, sky in radiation if emissivity > 0]

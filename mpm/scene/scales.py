@@ -16,6 +16,7 @@ from mpm.materials.porous import aspect
 from mpm.scene.build import elastic_law, stress_temperature_modulus
 from mpm.scene.exchange import programme, robin
 from mpm.scene.law import law
+from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
 
 LATTICE = 4  # cells a direction of the quadrature that measures a body
@@ -132,8 +133,7 @@ def temperatures(experiment, name: str) -> list[tuple[float, float]]:
     for entry in experiment.surfaces:
         if entry.of == name:
             found += [bounds(outside) for beta, outside in robin(entry) if beta > 0]
-            if entry.radiation is not None:
-                found.append(bounds(programme(entry.radiation.surroundings)))
+            found += [bounds(programme(part.outside)) for part in acting(entry, "grey")]
     found += [bounds(programme(wall.heat.temperature)) for wall in experiment.walls.values() if wall.heat is not None]
     found += [(stage.temperature,) * 2 for stage in experiment.loading if stage.temperature is not None]
     return found
@@ -168,7 +168,7 @@ def of_body(experiment, name: str) -> Scales:
         volume, surface, extent, reach, exchanges = shaped(experiment, name, high)
         height = along(experiment, extent)
     material = experiment.materials[body.material]
-    rise = sum(abs(entry.flux.q) for entry in experiment.surfaces if entry.of == name and entry.flux is not None) * surface * experiment.time.end
+    rise = sum(abs(part.rate) for entry in experiment.surfaces if entry.of == name for part in acting(entry, "flux")) * surface * experiment.time.end
     if rise and material.heat is not None:
         alpha = ends(material.heat.alpha, low, high)[0]
         low, high = low - rise / (volume * material.density * alpha), high + rise / (volume * material.density * alpha)
@@ -208,10 +208,10 @@ def depth(outline, rim: np.ndarray, seen: np.ndarray) -> float:
 def exchanging(entry, area: float, high: float) -> list[Exchanging]:
     """What one surface entry exchanges by; a flux has no coefficient."""
     found = [Exchanging(entry.side, beta, area, *bounds(outside), isinstance(outside, float)) for beta, outside in robin(entry) if beta > 0 and area > 0]
-    if entry.radiation is not None and entry.radiation.emissivity > 0:
-        sky = programme(entry.radiation.surroundings)
-        slope = 4 * STEFAN_BOLTZMANN * entry.radiation.emissivity * max(high, bounds(sky)[1]) ** 3
-        found.append(Exchanging(entry.side, slope, area, *bounds(sky), False))
+    for part in acting(entry, "grey") if area > 0 else ():
+        low, most = bounds(programme(part.outside))
+        slope = 4 * STEFAN_BOLTZMANN * part.rate * max(high, most) ** 3
+        found += [Exchanging(entry.side, slope, area, low, most, False)] if part.rate > 0 else []
     return found
 
 

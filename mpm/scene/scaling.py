@@ -11,12 +11,20 @@ kinetic   largest kinetic energy over the work done: kinetic, elastic and dissip
 
 import numpy as np
 
+from mpm.config import boundary
+from mpm.scene.menus import known
 from mpm.state import Run
 from mpm.warned import warning
 
 FROUDE, KINETIC = 0.02, 0.05
 VALUES = {"constant": ("value",), "table": ("value",), "bump": ("base", "heat"), "logistic": ("low", "high")}  # fields of a law of temperature
 MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
+EXCHANGE = {  # the field that is a rate, and the field of the temperature outside
+    "convection": ("beta", "outside"),
+    "flux": ("q", None),
+    "fixed": ("", "temperature"),
+    "radiation": ("emissivity", "surroundings"),
+}
 
 
 def times(value, factor: float):
@@ -59,14 +67,7 @@ def material(model, S: float):
 
 
 def surface(model, S: float):
-    return model.model_copy(
-        update={
-            "convection": exchange(model.convection, S, "beta", "outside"),
-            "flux": exchange(model.flux, S, "q", None),
-            "fixed": exchange(model.fixed, S, "", "temperature"),
-            "radiation": exchange(model.radiation, S, "emissivity", "surroundings"),
-        }
-    )
+    return model.model_copy(update={kind: exchange(getattr(model, kind), S, *known(EXCHANGE, kind, "exchange")) for kind in boundary.EXCHANGES})
 
 
 def load(model, S: float):

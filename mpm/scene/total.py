@@ -12,6 +12,7 @@ from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, value
 from mpm.scene.build import SIDES, STRAINS, elastic_law, expansion_law, spin_tensor
 from mpm.scene.exchange import exchanging_surface
 from mpm.scene.law import law
+from mpm.scene.menus import pulling
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
@@ -186,8 +187,7 @@ def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
 def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> tuple[np.ndarray, float, float]:
     """(nodal forces at full load (n, D), or (0, D) without any; ramp; rate of the drag)."""
     D, entries = experiment.grid.directions, [entry for entry in experiment.loads if entry.of == name]
-    tractions = [entry for entry in entries if entry.traction is not None]
-    drag = float(sum(entry.drag.rate for entry in entries if entry.drag is not None))
+    tractions, drag = pulling(entries)
     if not tractions:
         return np.zeros((0, D)), 0.0, drag
     ramps = {entry.traction.ramp for entry in tractions}

@@ -1,0 +1,50 @@
+"""What the kinds of a menu of the config are to solvers: one table a family. A kind that its table does not know is refused by name, never left out.
+
+acting(entry)     exchange of one surface entry          pulling(entries)   loads of one body
+To add an exchange or a load: a line in its table, in that of time scaling (scaling.py), and what is new about it in the solvers that `parts` names.
+"""
+
+from typing import Any, NamedTuple
+
+from mpm.config import boundary
+from mpm.config import loads as config_loads
+from mpm.scene.refusal import SceneError
+
+
+class Part(NamedTuple):
+    """One exchange as every solver takes it: coefficient and what is outside (a number or a programme of the config)."""
+
+    role: str  # robin: beta (outside - T); flux: q; grey: sigma emissivity (outside^4 - T^4)
+    rate: float  # beta [W/(m2 K)], q [W/m2] or emissivity
+    outside: Any = None
+
+
+EXCHANGE = {
+    "convection": lambda one: Part("robin", one.beta, one.outside),
+    "fixed": lambda one: Part("robin", float("inf"), one.temperature),
+    "flux": lambda one: Part("flux", one.q),
+    "radiation": lambda one: Part("grey", one.emissivity, one.surroundings),
+}
+LOAD = ("traction", "drag")
+
+
+def known(table: Any, kind: str, family: str) -> Any:
+    """What a table has for a kind."""
+    if kind not in table:
+        raise SceneError(f"{family} {kind!r} is not known here; what is: {', '.join(table)}")
+    return table[kind]
+
+
+def acting(entry, role: str = "") -> list[Part]:
+    """What a surface entry does, in the order of the table; of one role where told."""
+    there = [kind for kind in (*EXCHANGE, *(set(boundary.EXCHANGES) - set(EXCHANGE))) if getattr(entry, kind, None) is not None]
+    parts = [known(EXCHANGE, kind, "exchange")(getattr(entry, kind)) for kind in there]
+    return [part for part in parts if part.role == role or not role]
+
+
+def pulling(entries) -> tuple[list, float]:
+    """(entries with a traction, rate of the drag) of the loads on one body."""
+    for kind in config_loads.LOADS:
+        if kind not in LOAD and any(getattr(entry, kind, None) is not None for entry in entries):
+            known(dict.fromkeys(LOAD), kind, "load")
+    return [entry for entry in entries if entry.traction is not None], float(sum(entry.drag.rate for entry in entries if entry.drag is not None))
