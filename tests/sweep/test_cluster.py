@@ -1,3 +1,4 @@
+import signal
 import socket
 import sys
 import time
@@ -9,7 +10,7 @@ from dask_cluster import After, Dask
 
 from mpm.config import load
 from mpm.records.provenance import source_hash
-from mpm.sweep import cluster
+from mpm.sweep import cluster, local
 from mpm.sweep.api import execute, tree_of
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
@@ -47,6 +48,22 @@ def test_local_gives_the_same_dataset_and_listens_on_loopback_alone(config, tmp_
     assert compare(tmp_path / "dask", tmp_path / "own") == []
     assert all(address.startswith("0100007F:") for address in listening) and not any(address.endswith(":2253") for address in listening)
     assert go(points, tmp_path / "dask", "local").ran == 0
+
+
+def test_a_local_worker_that_stands_still_is_replaced_and_told(monkeypatch):
+    monkeypatch.setattr(local, "STALL", 1.0)
+    ours = local.Local(cluster.loaded(), 1)
+    try:
+        (first,) = ours.children
+        first.send_signal(signal.SIGSTOP)
+        end = time.monotonic() + 30
+        while not ours.notes and time.monotonic() < end:
+            time.sleep(0.1)
+            ours.grow(1)
+        assert ours.notes == ["a Dask worker did nothing for 1 s; it is replaced"]
+        assert first.poll() == -signal.SIGKILL and [child.poll() for child in ours.children] == [None] and ours.children[0] is not first
+    finally:
+        ours.close()
 
 
 @pytest.mark.slow
