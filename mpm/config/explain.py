@@ -20,6 +20,9 @@ EXPECTED = {
 }
 
 
+LONGEST = 200  # letters of a key that are told
+
+
 @dataclass(frozen=True)
 class Finding:
     """Something wrong at a path of the data. `on_key` points at the key rather than at the value."""
@@ -35,7 +38,8 @@ class Finding:
 
 def shown(path: Path) -> str:
     """A path as users write it."""
-    return ".".join(str(key) for key in path)
+    words = map(str, path)
+    return ".".join(word if len(word) <= LONGEST else f"{word[:40]}..." for word in words)
 
 
 def locate(root: Node, path: Path, on_key: bool) -> tuple[Node, tuple[Any, int, int], bool]:

@@ -12,6 +12,7 @@ from mpm.config.shapes_fit import misfits, outside
 from mpm.config.slots import Path
 
 MOST_CELLS = 10**9
+MOST_LETTERS = 100  # of a name: it becomes a variable's, and those of HDF5 end at 64 kB
 
 
 def vector(experiment: Any, path: Path, value: Any, what: str) -> Iterator[Finding]:
@@ -25,7 +26,10 @@ def vector(experiment: Any, path: Path, value: Any, what: str) -> Iterator[Findi
 def plain_names(experiment: Any, section: str, names: Iterable[str]) -> Iterator[Finding]:
     """Names become variables and paths."""
     for name in names:
-        if not name.isidentifier() or not name.isascii():
+        if len(name) > MOST_LETTERS:
+            said = f"the name {name[:20]!r}... has {len(name)} letters"
+            yield Finding((*section.split("."), name), said, f"at most {MOST_LETTERS} letters", on_key=True)
+        elif not name.isidentifier() or not name.isascii():
             yield Finding(
                 (*section.split("."), name), f"{name[:60]!r} is not a plain name", "letters, digits and underscores, not beginning with a digit", on_key=True
             )

@@ -91,8 +91,8 @@ def number(value: Any, digits: int = 3) -> str:
 def numbers(values: Iterable[Any]) -> list[str]:
     """Each value in words, in as many digits as tell apart those that differ; long texts by their number where their beginnings are the same."""
     values = list(values)
-    for digits in (3, 4, 5, 6, 8, 10, 12, 15, 17):
-        texts = [number(value, digits) for value in values]
+    for digits in (3, 4, 5, 6, 8, 10, 12, 15, 0):
+        texts = [number(value, digits) if digits or isinstance(value, str) else repr(float(value)).replace("-", "−") for value in values]
         if len(set(texts)) == len(set(values)):
             return texts
     return [f"{text} ({place + 1})" if texts.count(text) > 1 else text for place, text in enumerate(texts)]

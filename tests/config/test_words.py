@@ -158,3 +158,11 @@ def test_every_temperature_of_a_config_is_looked_at(tmp_path):
     places = [line.split(": ")[1] for line in load(file).cautions if "slab.yaml" in line]
     heat, swept = "materials.d.heat.fourier", ["sweep.axes.bodies.s.temperature"] * 2 + ["sweep.axes.outside"]
     assert sorted(places) == sorted([f"{heat}.kappa.table.temperature.0", f"{heat}.alpha.bump.at", *swept])
+
+
+def test_a_name_is_no_longer_than_a_variable_s_may_be(loaf):
+    body, probe = "a" * 101, "p" * 70_000
+    data = loaf | {"bodies": {body: loaf["bodies"]["loaf"]}, "output": {"probes": {probe: [0, "21.5 mm"]}}}
+    with pytest.raises(ConfigError) as caught:
+        load(data | {"surfaces": [loaf["surfaces"][0] | {"of": body}]})
+    assert [one.message for one in caught.value.problems] == [f"the name {'a' * 20!r}... has 101 letters", f"the name {'p' * 20!r}... has 70000 letters"]

@@ -37,3 +37,11 @@ def test_reason_leaves_out_what_differs_from_point_to_point():
     assert one == words.reason("diverged", "diverged: det F <= 0 at particle 3, t = 9 s, step 1") == "diverged: det F ≤ 0"
     assert words.reason("killed", "") == "killed"
     assert words.reason("failed", "ValueError: no\nmore") == "failed: ValueError: no"
+
+
+def test_numbers_that_differ_have_different_texts():
+    assert words.numbers([0.1, 0.35, 1000]) == ["0.1", "0.35", "1000"]
+    assert words.numbers([0.3, 0.3001, 2e7]) == ["0.3", "0.3001", "2·10⁷"]
+    assert words.numbers([0.3, 0.1 + 0.2]) == ["0.3", "0.30000000000000004"]
+    assert words.numbers([-1e-9, -1.0000001e-9]) == ["−1·10⁻⁹", "−1.0000001·10⁻⁹"]
+    assert words.numbers(["a" * 40, "a" * 41, "b"]) == [f"{'a' * 27}… (1)", f"{'a' * 27}… (2)", "b"]
