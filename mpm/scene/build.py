@@ -250,7 +250,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         blend=blend,
         affine=affine,
         sharp=sharp,
-        repair=type(experiment.method.bounds).kind != "free",
+        repair=type(experiment.method.bounds).kind != "free" and not references,
         tears=experiment.method.fracture == "fail",
         times=times,
         step=None if experiment.time.step == "auto" else experiment.time.step,
