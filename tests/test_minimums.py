@@ -66,6 +66,6 @@ def test_a_fresh_environment_runs_the_smoke_sweeps(tmp_path, version, exactly):
     mpm = tmp_path / "venv/bin/mpm"
     run(mpm, "sweep", ROOT / "configs/smoke.yaml", "-o", "smoke")
     run(mpm, "sweep", ROOT / "configs/scenes/loaf.yaml", "--smoke", "-o", "loaf")
-    run(mpm, "sweep", ROOT / "configs/smoke.yaml", "-o", "dask", "--scheduler", "local")
-    assert run(mpm, "compare", "smoke", "dask") == "same\n"
+    run(mpm, "sweep", ROOT / "configs/scenes/loaf.yaml", "--smoke", "-o", "dask", "--scheduler", "local")
+    assert run(mpm, "compare", "loaf", "dask") == "same\n"
     assert run(tmp_path / "venv/bin/python", "-c", LOOK, tmp_path) == "read\n"

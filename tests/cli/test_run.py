@@ -56,6 +56,16 @@ def test_finished_is_finished(mpm, write, marks, tmp_path):
         assert float(data.kappa) == 0.2
 
 
+def test_damage_is_set_aside_and_the_dataset_made_again(mpm, write, marks, tmp_path):
+    config, path = write([0.2]), tmp_path / "out" / "run.nc"
+    mpm("run", config, "-o", "out")
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-1])
+    code, out, _ = mpm("verify", "out")
+    assert code == 1 and "the same `mpm run` makes run.nc again" in out and not path.exists() and not (tmp_path / "out" / "sweep.nc").exists()
+    assert mpm("run", config, "-o", "out")[0] == 0 and len(path.read_bytes()) == len(whole) and marks("run") == ["0.2"]
+
+
 def test_a_failed_point_is_finished_too(mpm, write, marks):
     config = write([fake.DIVERGES])
     assert mpm("run", config, "-o", "out")[0] == mpm("run", config, "-o", "out")[0] == 4 and marks("run") == ["17.0"]
