@@ -117,7 +117,8 @@ def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float
     share = MOST if last else CORNERS if isinstance(steps, LinearSteps) and not fixed else NOTICEABLE
     slack = max(share * system.span, 1e-9 * system.hottest)
     low, high = (bound - system.zero for bound in system.bounds)
-    return max(low - slack, -system.zero), high + slack
+    ground = -system.zero if system.bounds[0] != 0.0 else -np.inf  # data without a unit, from 1 to 0, say nothing of absolute zero
+    return max(low - slack, ground), high + slack
 
 
 def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
