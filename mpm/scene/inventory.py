@@ -1,9 +1,12 @@
 """What a config holds, from the config alone: the physics that is compiled and what is absent, the bytes that a point writes."""
 
 import math
+from itertools import combinations
 
 from mpm.config.boundary import EXCHANGES
 from mpm.config.loads import LOADS
+
+MANY = 10  # pairs of bodies that are told one by one
 
 
 def physics(experiment) -> dict[str, list[str]]:
@@ -20,9 +23,25 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
     present |= {f"load: {kind}" for kind in LOADS for entry in experiment.loads if getattr(entry, kind) is not None}
     present |= {"gravity"} if experiment.gravity is not None else set()
+    present |= set(pairs(experiment))
     said = {text.split(":")[0] for text in present}
     parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "load", "gravity")
     return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
+
+
+def pairs(experiment) -> list[str]:
+    """How every two bodies that move meet; their number where they are more than MANY."""
+    known = {frozenset(pair.between): pair for pair in experiment.contacts}
+    moving = [name for name, body in experiment.bodies.items() if experiment.materials[body.material].elastic is not None]
+    found = []
+    for two in combinations(moving, 2):
+        pair, warm = known.get(frozenset(two)), all(experiment.materials[experiment.bodies[name].material].heat is not None for name in two)
+        rubs = f"rub ({pair.friction:g})" if pair and pair.friction else "slide"
+        slides = "are welded" if pair and pair.welded else "do not slide" if pair and pair.stick else rubs
+        free = pair is None or pair.conductance in (None, math.inf)
+        passes = "and pass heat freely" if free else f"and pass heat ({pair.conductance:g} W/m2K)" if pair.conductance else "without heat"
+        found.append(f"contact: {two[0]} and {two[1]} {slides}{' ' + passes if warm else ''}{'' if pair else ' (not named)'}")
+    return found if len(found) <= MANY else [f"contact: {len(found)} pairs of bodies, {len(known)} of them named"]
 
 
 def ticks(end: float, every: float) -> int:

@@ -140,3 +140,12 @@ def test_what_is_not_known_is_refused(changes, said):
 def test_pairs_are_checked(pair, said):
     with pytest.raises(mpm.ConfigError, match=said):
         refused(contacts=[pair])
+
+
+def test_the_plan_says_how_bodies_meet():
+    """Every pair of bodies that move, those that are not named too."""
+    from mpm.scene.inventory import physics
+
+    told = [refused(**more) for more in ({}, {"contacts": [{"between": ["cold", "hot"], "friction": 0.3, "conductance": 5}]})]
+    said = [next(text for text in physics(one)["compiled"] if text.startswith("contact")) for one in told]
+    assert said == ["contact: hot and cold slide and pass heat freely (not named)", "contact: hot and cold rub (0.3) and pass heat (5 W/m2K)"]
