@@ -84,11 +84,11 @@ def printed():
 
     plain = {re.sub(r"(?<=[a-z])(\d)", r"**\1", row[2]) for row in TABLE} | set(re.findall(r"like \\\"1 (.*?)\\\"", json.dumps(schema())))
     for unit in sorted(plain - {"1", "%"}):
-        for text in {unit, unit.replace("**", ""), words.units_text(unit)}:
+        for text in sorted({unit, unit.replace("**", ""), words.units_text(unit)}):
             yield f"3 {text}", unit, 3.0
     yield from (("3 1", "", 3.0), ("3 %", "", 0.03))
     for unit in ("s", "m", "Pa"):
-        for shown in {words.scale([10.0**power], unit) for power in range(-9, 9)}:
+        for shown in sorted({words.scale([10.0**power], unit) for power in range(-9, 9)}, key=str):
             yield f"3 {shown.units}", unit, 3.0 / shown.factor
     yield "20 °C", "K", 293.15
 

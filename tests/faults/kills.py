@@ -21,7 +21,7 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "fakes")]
 
 import h5py  # noqa: E402
-from scenes import config, many  # noqa: E402
+from scenes import fields, many  # noqa: E402
 
 from mpm.config import load  # noqa: E402
 from mpm.sweep.api import execute  # noqa: E402
@@ -33,8 +33,7 @@ from mpm.sweep.store import Store  # noqa: E402
 from mpm.sweep.verify import files, wrong  # noqa: E402
 
 CALLS = ("open", "write", "fsync", "replace", "ftruncate", "mkdir")
-FIELDS = {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"], "particles": ["position", "body"]}}
-SWEEPS = {"batches": load(many(24)), "own files": load(config([2.5, 17.0, 5.0], output=FIELDS))}  # at 17.0 the fake diverges
+SWEEPS = {"batches": load(many(24)), "own files": load(fields([2.5, 17.0, 5.0]))}  # at 17.0 the fake diverges
 TROUBLE = (errno.ENOSPC, errno.EIO, errno.EROFS, errno.EDQUOT, errno.EFBIG)
 real = {name: getattr(os, name) for name in CALLS}
 

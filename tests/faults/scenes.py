@@ -20,6 +20,13 @@ def config(kappas, **sections):
     return base | sections
 
 
+def fields(kappas):
+    """The same of a body that moves, with snapshots of grid and particles."""
+    output = {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"], "particles": ["position", "body"]}}
+    materials = {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e4, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}}
+    return config(kappas, output=output, materials=materials)
+
+
 def many(count):
     """Points that the fake runner computes at once."""
     return config(np.round(np.linspace(0.01, 10.0, count), 6).tolist())

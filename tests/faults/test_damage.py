@@ -4,7 +4,7 @@ import json
 import random
 
 import pytest
-from scenes import config, go, many
+from scenes import config, fields, go, many
 
 from mpm.records.checkpoint import Checkpoint
 from mpm.sweep.compare import compare
@@ -13,14 +13,12 @@ from mpm.sweep.lock import Refused
 from mpm.sweep.store import Store
 from mpm.sweep.verify import files, verify, wrong
 
-FIELDS = {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"], "particles": ["position", "body"]}}
-
 
 def folder(tmp_path):
     """A folder with every kind of file that carries a checksum."""
     out = tmp_path / "out"
     go(many(40), out)
-    go(config([2.5, 17.0, 13.0], output=FIELDS), out, rerun="stale")
+    go(fields([2.5, 17.0, 13.0]), out, rerun="stale")
     Checkpoint(Store(out).checkpoint("a" * 16), "a" * 16).save({"step": 3})
     kinds = {kind for kind, _ in files(out)}
     assert kinds == {"experiment", "dataset", "point", "batch", "checkpoint"}
@@ -64,7 +62,7 @@ def test_no_damage_is_silent_at_length(tmp_path, change, times, table):
 def test_what_is_damaged_is_set_aside_and_runs_again_alone(tmp_path, marks):
     whole, out = tmp_path / "whole", tmp_path / "out"
     for place in (whole, out):
-        go(config([2.5, 17.0, 5.0], output=FIELDS), place)
+        go(fields([2.5, 17.0, 5.0]), place)
     before = len(marks())
     path = next(path for kind, path in files(out) if kind == "point")
     path.write_bytes(flip(path.read_bytes(), random.Random(1)))
@@ -94,10 +92,10 @@ def test_a_damaged_batch_costs_its_points_and_a_damaged_dataset_none(tmp_path, m
 def test_the_same_command_and_status_see_a_damaged_summary(tmp_path):
     """The line of a file, which is all that a resumed sweep reads of it, has a checksum of its own."""
     out = tmp_path / "out"
-    go(config([2.5, 5.0], output=FIELDS), out)
+    go(fields([2.5, 5.0]), out)
     path = next(path for kind, path in files(out) if kind == "point")
     path.write_bytes(path.read_bytes().replace(b'"status": 0', b'"status": 1'))
-    result = go(config([2.5, 5.0], output=FIELDS), out)
+    result = go(fields([2.5, 5.0]), out)
     assert result.ran == 1 and result.counts["ok"] == 2
 
 

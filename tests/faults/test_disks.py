@@ -6,12 +6,12 @@ import subprocess
 
 import kills
 import pytest
-from scenes import config, go
+from scenes import fields, go
 
 from mpm.config import load
 from mpm.sweep import room
 
-DATA = config([round(0.1 + 0.05 * k, 2) for k in range(20)], output=kills.FIELDS)
+DATA = fields([round(0.1 + 0.05 * k, 2) for k in range(20)])
 
 
 def run(data, out):

@@ -13,6 +13,8 @@ from mpm.sweep.engine import Options
 from mpm.sweep.verify import verify
 
 SNAPSHOTS = {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"], "particles": ["position", "body"]}}
+ELASTIC = {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e4, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}}
+MOVES = {"output": SNAPSHOTS, "materials": ELASTIC}  # what has particles
 
 
 def go(config, out, **more):
@@ -20,7 +22,7 @@ def go(config, out, **more):
 
 
 def test_every_variable_has_units_and_a_long_name_and_attributes_tell_the_origin(config, tmp_path):
-    go(config([0.2, 17.0], output=SNAPSHOTS), tmp_path)
+    go(config([0.2, 17.0], **MOVES), tmp_path)
     tree = tree_of(tmp_path / "sweep.nc")
     for node in tree.subtree:
         for name, variable in node.to_dataset(inherit=False).variables.items():
@@ -35,7 +37,7 @@ def test_every_variable_has_units_and_a_long_name_and_attributes_tell_the_origin
 
 
 def test_grid_and_ragged_particles(config, tmp_path):
-    go(config([0.2, 17.0, 0.5], output=SNAPSHOTS), tmp_path)
+    go(config([0.2, 17.0, 0.5], **MOVES), tmp_path)
     tree = tree_of(tmp_path / "sweep.nc")
     grid, particles = tree["grid"].to_dataset(), tree["particles"].to_dataset()
     assert grid.temperature.dims == ("kappa", "snapshot", "x") and grid.temperature.dtype == np.float32 and grid.snapshot.values.tolist() == [0, 2, 4, 6, 8, 10]
@@ -48,7 +50,7 @@ def test_grid_and_ragged_particles(config, tmp_path):
 
 
 def test_grids_that_differ_and_fields_that_are_too_large_stay_in_the_points(config, tmp_path, monkeypatch):
-    points = config([0.2], output=SNAPSHOTS)
+    points = config([0.2], **MOVES)
     cases = plan(load(points | {"sweep": {"axes": {"cell": [1e-3, 2e-3]}}}))
     grids = [np.linspace(0, 1, 3), np.linspace(0, 1, 5)]
     records = {
@@ -111,7 +113,7 @@ SWEEPS = [
 
 @pytest.mark.parametrize("sweep", SWEEPS)
 def test_a_group_opened_alone_has_its_axes(config, tmp_path, sweep):
-    go(config([1], sweep=sweep, output=SNAPSHOTS), tmp_path)
+    go(config([1], sweep=sweep, **MOVES), tmp_path)
     root, tree = xr.load_dataset(tmp_path / "sweep.nc"), tree_of(tmp_path / "sweep.nc")
     swept = {name for name, variable in root.coords.items() if variable.dims}
     for name in ("series", "grid", "particles"):
@@ -125,7 +127,7 @@ def test_a_group_opened_alone_has_its_axes(config, tmp_path, sweep):
 def test_a_dataset_can_be_read_in_chunks(config, tmp_path, monkeypatch, sweep):
     """One chunking a group, or xarray refuses to say what it is; small chunks here, so that there are several."""
     monkeypatch.setattr("mpm.records.netcdf.CHUNK", 50)
-    go(config([1], sweep=sweep, output=SNAPSHOTS), tmp_path)
+    go(config([1], sweep=sweep, **MOVES), tmp_path)
     whole = tree_of(tmp_path / "sweep.nc")
     with xr.open_datatree(tmp_path / "sweep.nc", chunks={}) as tree:
         assert all(node.to_dataset().chunks is not None for node in tree.subtree)
@@ -165,7 +167,7 @@ def test_a_point_damaged_inside_is_pending_and_told(config, tmp_path):
 @pytest.mark.parametrize("kappa, status", [(0.2, 0), (17.0, 4), (13.0, 1)])
 def test_one_run_has_the_same_groups(config, kappa, status, monkeypatch):
     monkeypatch.setattr("mpm.sweep.engine.RUNNER", "fake_runner")
-    data, record = run_one(load(config([kappa, 0.3], output=SNAPSHOTS)))
+    data, record = run_one(load(config([kappa, 0.3], **MOVES)))
     tree = tree_of(data)
     assert list(tree.children) == ["series", "grid", "particles"] and tree.status.item() == status == record.status
     assert np.isfinite(tree.temperature_mean.item()) == (status == 0) if status != 1 else "temperature_mean" not in tree
