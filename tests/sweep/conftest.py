@@ -21,6 +21,8 @@ def config():
             "output": {"every": 1, "probes": {"centre": [0.01]}},
             "sweep": {"axes": {"kappa": list(kappas)}},
         }
+        if sections.get("output", {}).get("snapshots", {}).get("particles"):  # which only a body that moves has
+            base["materials"]["m"]["elastic"] = {"hencky": {"E": 1e4, "nu": 0.3}}
         return base | sections
 
     return make
