@@ -1,4 +1,4 @@
-"""Guards of a run of moving bodies (failure-modes.md 1), beside those that sit in the step itself (integrate/respond.py, integrate/explicit.py).
+"""Guards of a run of moving bodies (docs/physics.md 15), beside those that sit in the step itself (integrate/respond.py, integrate/explicit.py).
 
 opening   every block of steps looks at what it reads: every field finite, every particle on the grid (integrate/sound.py); `whole` says what was wrong
 block     before it, temperatures: above absolute zero and, where nothing heats, within their data by more than the transfer is known to overshoot (SLOPES,

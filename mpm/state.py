@@ -85,7 +85,7 @@ class Thermal(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Pieces of a body's surface that exchange heat, each at an offset from its particle (physics.md 11).
+    """Pieces of a body's surface that exchange heat, each at an offset from its particle (docs/physics.md 11).
 
     What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
     """
@@ -136,7 +136,7 @@ class Expansion(NamedTuple):
 
 
 class Latched(NamedTuple):
-    """Thermal stress -gamma (min(highest Theta so far, set) - reference) 1: swells as it warms, and keeps that as it cools (physics.md 10)."""
+    """Thermal stress -gamma (min(highest Theta so far, set) - reference) 1: swells as it warms, and keeps that as it cools (docs/physics.md 10)."""
 
     gamma: float  # [Pa/K]
     shift: float  # zero - reference [K]
@@ -156,7 +156,7 @@ class NoHeating(NamedTuple):
 
 
 class Heating(NamedTuple):
-    """Elastic heating along the adiabat and the share of dissipation that becomes heat (physics.md 4, step 7)."""
+    """Elastic heating along the adiabat and the share of dissipation that becomes heat (docs/physics.md 4, step 7)."""
 
     gamma: float  # stress-temperature modulus, zero where elastic heating is not named [Pa/K]
     fraction: float  # chi_d, zero where dissipation heating is not named [-]

@@ -1,4 +1,4 @@
-"""Quadratic B-splines on nodes of spacing h (physics.md 3).
+"""Quadratic B-splines on nodes of spacing h (docs/physics.md 3).
 
 f = x/h - nearest node:  w = 1/2 (1/2 - f)^2, 3/4 - f^2, 1/2 (1/2 + f)^2;  sum w = 1, sum w d = 0, sum w d^2 = h^2/4.
 Good for: nearly everything.   Fails when: particles are fewer than two a cell (the quadrature floor).

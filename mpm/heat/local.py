@@ -1,8 +1,8 @@
 """What deformation and temperature do to each other at a particle: thermal stress, heating along the adiabat, heat of dissipation.
 
-thermal stress   gamma (Theta - Theta_0)                                                     physics.md 1
-latched          gamma (min(max over time of Theta, T_set) - Theta_0)                        physics.md 10
-heating          Theta <- Theta exp(-gamma/(R0 alpha) (tr eps_new - tr eps_old)) + chi_d D/(R0 alpha)   physics.md 4, step 7
+thermal stress   gamma (Theta - Theta_0)                                                     docs/physics.md 1
+latched          gamma (min(max over time of Theta, T_set) - Theta_0)                        docs/physics.md 10
+heating          Theta <- Theta exp(-gamma/(R0 alpha) (tr eps_new - tr eps_old)) + chi_d D/(R0 alpha)   docs/physics.md 4, step 7
 The exponential is the exact adiabat, so any step gives Theta = Theta_0 J^-Gamma.
 """
 

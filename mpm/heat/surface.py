@@ -1,4 +1,4 @@
-"""Surface pieces that follow the body: areas by Nanson, offsets by F (physics.md 3 and 11).
+"""Surface pieces that follow the body: areas by Nanson, offsets by F (docs/physics.md 3 and 11).
 
 a = J F^-T A,  d = F D, with A and D of the reference shape. Plane strain has F33 = 1; axisymmetric areas carry the factor r in A and the
 hoop stretch in J. In one direction a piece is an end point of constant area.

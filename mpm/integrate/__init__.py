@@ -8,6 +8,6 @@ heat_latent.py  the three where alpha follows temperature, on nodes that take up
 pieces.py     surface pieces during a heat step; surroundings.py  who acts on which of them, hot walls
 sharpen.py    XPIC's extra transfers
 locking.py    F-bar: changes of volume averaged over the grid
-explicit.py   the mechanical step as the algorithm box of physics.md 4
+explicit.py   the mechanical step as the algorithm box of docs/physics.md 4
 timestep.py   every explicit limit, and which one binds
 """

@@ -1,4 +1,4 @@
-"""The mechanical step, symplectic Euler, chunk by chunk (physics.md 4).
+"""The mechanical step, symplectic Euler, chunk by chunk (docs/physics.md 4).
 
 open      particles, if they are sound -> nodes
 each step nodes: v = p/m + dt g, walls (XPIC: its extra transfers)

@@ -1,4 +1,4 @@
-"""Elastic heating as the source document has it: a term of the heat equation on the grid (physics.md 4, option `grid`).
+"""Elastic heating as the source document has it: a term of the heat equation on the grid (docs/physics.md 4, option `grid`).
 
 C_i = sum alpha m w_ip,   Q_i = -dt sum V0 gamma Theta_p (div v+)_p w_ip,   Theta_p += sum w_ip Q_i/C_i    through the enthalpy
 with the new velocity v+, the one that updates F; before the particles move. Conserves what it takes up: sum C_i (Q_i/C_i) = sum Q_i.

@@ -6,7 +6,7 @@ Why    Euler's error in the step has the sign of APIC's damping, and adds to it.
        disc, 6, 12, 24 cells a radius         4.2e-3, 1.0e-3, 2.5e-4              7.4e-3, 1.9e-3, 4.6e-4
        slab, worst of four offsets, 8 to 64   3.7e-3, 8.6e-4, 2.0e-4, 5.6e-5      4.5e-3, 1.1e-3, 2.7e-4, 6.5e-5      (tests/integrate/test_surface_exchange.py)
 Good values   heat steps of 0.15 R0 alpha h^2/(kappa J). Twice as long the disc has 2.6e-3, 6.0e-4, 1.4e-4, but the slab 3.1e-3, 7.3e-4, 2.3e-4, 1.2e-4: between
-       transfers the lumped mass shows, which is of order 1 at a free surface (physics.md 12).
+       transfers the lumped mass shows, which is of order 1 at a free surface (docs/physics.md 12).
 Stages are for the nodes alone: for `stable` itself APIC particles in bad places grew 3.4-fold in a step of 3 R0 alpha h^2/kappa (five stages; 1 500 random
        clouds, mpm.study.operators.stabilised).
 Fails when   the basis is linear: a node that a particle just touches has no bound between transfers (auto is implicit there); beta h/kappa is large,

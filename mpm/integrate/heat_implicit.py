@@ -1,4 +1,4 @@
-"""One implicit heat step of a moving body: conduction and surface together, by conjugate gradients (heat_matrix.py; physics.md 3, 11).
+"""One implicit heat step of a moving body: conduction and surface together, by conjugate gradients (heat_matrix.py; docs/physics.md 4, 11).
 
     C (theta_k - base_k) = gamma dt f(theta_k),   f = sum V q grad(w) + sum S [q - beta (theta_s - outside)] w~,   theta+ = theta + dt sum b_k f(theta_k)/C
     order 1   backward Euler: gamma = 1                    order 2   Alexander's two stages: gamma = 1 - 1/sqrt(2); both L-stable

@@ -1,4 +1,4 @@
-"""One explicit heat step (physics.md 3, 10, 11).
+"""One explicit heat step (docs/physics.md 3, 10, 11).
 
 C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
 C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~: integrate/pieces.py

@@ -1,4 +1,4 @@
-"""Surface pieces during a heat step: where they are now, and what they load on to the nodes (physics.md 11, linear-exact).
+"""Surface pieces during a heat step: where they are now, and what they load on to the nodes (docs/physics.md 11, linear-exact).
 
 load_i = dt S [q - beta (theta_s - outside)] w~_i,   theta_s = sum_j w~_j theta_j,   w~ = w + grad(w) (x_s - x_p)
 """

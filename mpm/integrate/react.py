@@ -1,4 +1,4 @@
-"""What the particles of a chunk answer their trial strains: return map, heating, stress (physics.md 4, steps 6 to 8), eight at once.
+"""What the particles of a chunk answer their trial strains: return map, heating, stress (docs/physics.md 4, steps 6 to 8), eight at once.
 
 eps = 1/2 log(1 + B);  return map on the trace and the deviator's size;  heating;  tau = 2 mu eps + (lam tr eps - thermal stress) 1;  B = exp(2 eps) - 1.
 In three dimensions without principal axes (mpm.isotropic), in a plane with those of its closed form. Neo-Hookean: react_neo_hookean.py.

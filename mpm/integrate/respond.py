@@ -1,4 +1,4 @@
-"""How the particles of a chunk answer the gathered velocity gradient (physics.md 4, steps 5 to 8), by dimension.
+"""How the particles of a chunk answer the gathered velocity gradient (docs/physics.md 4, steps 5 to 8), by dimension.
 
 A = dt L;  J <- J det(1 + A);  B <- (1 + A)(1 + B)(1 + A)^T - 1;  eps_i = 1/2 log1p(B_i);  return map;  heating;  tau from eps and the new temperature.
 Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau grad(w), as S (with the MLS gradient S/(sum w d^2), a slope).

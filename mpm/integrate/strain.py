@@ -1,4 +1,4 @@
-"""Strains of a chunk of particles from the gathered velocity gradients, eight particles at once (physics.md 4, step 5).
+"""Strains of a chunk of particles from the gathered velocity gradients, eight particles at once (docs/physics.md 4, step 5).
 
 A = dt L;  J <- J det(1 + A);  B <- (1 + A)(1 + B)(1 + A)^T - 1.  With what a particle that cannot answer is told by: see `guard`.
 """

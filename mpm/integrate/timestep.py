@@ -1,4 +1,4 @@
-"""How long an explicit step may be: every limit of physics.md 6, and which one binds.
+"""How long an explicit step may be: every limit of docs/physics.md 6, and which one binds.
 
 elastic wave      1/2 h sqrt(R0/(d lam + 2 mu)) / sqrt(1 + eps_c) / sqrt(1 + |eps_min|)      isolated particles included
 advection         h/(2 |v|)                                                                  half a cell a step
@@ -13,7 +13,7 @@ limit: between transfers a lone particle at the edge of a cell bears 1/3 only (A
 between transfers: there is no limit for them here, and `auto` takes implicit steps (mpm/scene/build.py).
 
 The heat limits bound the sub-step of a heat step; heat steps themselves come at their own pace,
-PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and above 0.2 the error grows (physics.md 11).
+PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and above 0.2 the error grows (docs/physics.md 11).
 """
 
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ def strongest(surface, thermal) -> float:
 
 
 def coupling(body, lam, mu, R0) -> float:
-    """Thermoelastic coupling number gamma^2 Theta/(R0 alpha (lam + 2 mu)): elastic heating stiffens the wave (physics.md 0)."""
+    """Thermoelastic coupling number gamma^2 Theta/(R0 alpha (lam + 2 mu)): elastic heating stiffens the wave (docs/physics.md 0)."""
     if not (isinstance(body.expansion, Expansion) and isinstance(body.heating, Heating | GridHeating) and body.heating.gamma > 0):
         return 0.0
     theta = body.thermal.zero + float(np.max(body.thermal.theta))

@@ -1,4 +1,4 @@
-"""Viscoplastic flow on the ellipse as the source document has it, corrected: overstress in pressure only, q <= M at any rate (physics.md 5.1).
+"""Viscoplastic flow on the ellipse as the source document has it, corrected: overstress in pressure only, q <= M at any rate (docs/physics.md 5.1).
 
 Minimises (p - p_tr)^2/(2 K) + (q - q_tr)^2/(6 mu) + dt M^2/(2 eta) <|p|/(p0 sqrt(M^2 - q^2)) - 1>^2. With p = M p0 y cos(phi), q = M sin(phi)
 and T = tan(phi) one equation in T is left; c, s = cos(phi), sin(phi).

@@ -1,4 +1,4 @@
-"""What both return maps share: invariants of the trial strain, the ellipse, and the strains that belong to mapped invariants (physics.md 5).
+"""What both return maps share: invariants of the trial strain, the ellipse, and the strains that belong to mapped invariants (docs/physics.md 5).
 
 p = -tr tau/3 (compression positive), q = sqrt(3/2) |dev tau|, both of the total Kirchhoff stress, thermal part included.
 Elastic where p^2/p0^2 + q^2 <= M^2. Differences of nearly equal numbers are written so that they lose nothing; the house's flags, which let LLVM

@@ -1,4 +1,4 @@
-"""Hencky elasticity: psi = mu e.e + lam/2 (tr e)^2 in principal logarithmic strains (physics.md 1)."""
+"""Hencky elasticity: psi = mu e.e + lam/2 (tr e)^2 in principal logarithmic strains (docs/physics.md 1)."""
 
 from typing import NamedTuple
 

@@ -1,7 +1,7 @@
 """Functions of temperature that a parameter may be: constant, table, bump (latent heat), logistic step.
 
 Every kind knows its value, its exact primitive over temperature (the specific enthalpy of a specific heat) and the inverse of that, so that
-heat can be kept as enthalpy and no step jumps over latent heat (physics.md 10). theta in K throughout; values are run-time arguments.
+heat can be kept as enthalpy and no step jumps over latent heat (docs/physics.md 10). theta in K throughout; values are run-time arguments.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The aspect p0 of the ellipse from porosity, by the plastic Poisson ratio (food.md 3).
+"""The aspect p0 of the ellipse from porosity, by the plastic Poisson ratio (docs/physics.md 5.4).
 
 nu_p = 1/2 (1 - phi)^n,  p0 = 1/3 sqrt((1 + nu_p)/(1/2 - nu_p)),  1 - phi = (1 - phi_0)/J
 An open foam (phi -> 1) has nu_p = 0 and p0 = 0.47; as the pores close nu_p goes to 1/2 and the ellipse to von Mises' cylinder. The volume of what is not

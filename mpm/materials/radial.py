@@ -1,4 +1,4 @@
-"""Viscoplastic flow on the ellipse, radial overstress: Perzyna viscosity on pressure and shear alike (physics.md 5.2).
+"""Viscoplastic flow on the ellipse, radial overstress: Perzyna viscosity on pressure and shear alike (docs/physics.md 5.2).
 
 Minimises (p - p_tr)^2/(2 K) + (q - q_tr)^2/(6 mu) + dt M^2/(2 eta) <s - 1>^2,  s = sqrt(p^2/p0^2 + q^2)/M: one implicit Euler step of
 dp/dt = -K M^2/eta <s - 1> ds/dp, dq/dt = -3 mu M^2/eta <s - 1> ds/dq.

@@ -54,7 +54,7 @@ def return_map(eps_trial, *, mu, lam, M, p0, eta, dt, form="radial", thermal_str
     thermal_stress  gamma (Theta - Theta_0) [Pa]
 
     Parameters may be arrays that broadcast against eps_trial without its last axis. Returns float64, broadcast shape + (3,).
-    Source       the project's physics notes, 5.1 and 5.2. Relaxation times at held strain: eta p0^2/K in pressure, eta/(3 mu) in shear (radial).
+    Source       docs/physics.md 5.1 and 5.2. Relaxation times at held strain: eta p0^2/K in pressure, eta/(3 mu) in shear (radial).
     Good values  p0 within 1e-3..1e3, K dt/eta within 1e-12..1e12.
     Fails when   an argument is out of range (ValueError says what is allowed) or the iteration ends without a root (ArithmeticError; none known).
     """

@@ -1,4 +1,4 @@
-"""The material point: no grid, no neighbours; one particle's physics under a prescribed history (physics.md 10, 0-D).
+"""The material point: no grid, no neighbours; one particle's physics under a prescribed history (docs/physics.md 10, 0-D).
 
 A batch of points with the same kinds of laws is one structure of arrays; one compiled call carries all of them. A single point is a batch of one.
 

@@ -1,4 +1,4 @@
-"""One step of a material point: the order of physics.md 4, steps 3 to 8, without a grid.
+"""One step of a material point: the order of docs/physics.md 4, steps 3 to 8, without a grid.
 
 exchange or prescribed temperature -> strain -> return map -> local heating along the adiabat and of dissipation -> stress at the new temperature.
 Where a direction has its stress prescribed, the strain that gives it is found by Newton's method on this whole step: the end of the step has the

@@ -1,7 +1,7 @@
 """Fewer directions: an axisymmetric scene for a round body, a line or a plane for a slab or a bar whose sides are insulated, or nearly so.
 
 Error     none by symmetry; else the tolerance of the steps, which are not the same (mpm.reduce.offers.own), and more. A round body is cut differently by
-          the two grids, which differ by 0.2/n^2 at most, n cells a radius (lumped mass, physics.md 12: 2.6e-3 and 6.4e-4 at n = 8 and 16). Of sides
+          the two grids, which differ by 0.2/n^2 at most, n cells a radius (lumped mass, docs/physics.md 12: 2.7e-3 and 6.8e-4 at n = 8 and 16). Of sides
           that exchange and are left out: what they would bring to the mean, at most 1 - exp(-beta S t/(R0 alpha V)), where means are asked for; at a
           probe in the depth d at most erfc(d/(2 sqrt(D t))) a side (a half space whose face is held), and no more than the exchange's own
           2 beta sqrt(t/(pi kappa R0 alpha)) (a half space under the full flux)

@@ -1,4 +1,4 @@
-"""One temperature for the whole body: R0 alpha V dTheta/dt = -beta S (Theta - outside) (physics.md 10, 0-D).
+"""One temperature for the whole body: R0 alpha V dTheta/dt = -beta S (Theta - outside) (docs/physics.md 10, 0-D).
 
 Error     the quasi-steady unevenness of the inside (mpm.scene.groups.uneven), an upper estimate; exp(-1) of it, the largest x exp(-x), where only
           means are asked for: they are off by as much as the rate is, a third of the unevenness or less; and the tolerance of the full model's steps

@@ -1,7 +1,7 @@
 """Fewer directions for bodies that move: a block between slip walls is a column, a round body that falls along its axis is axisymmetric.
 
 Error     none by symmetry where a block fills its domain between two slip walls: the grid is the same along the directions that stay, and so is the step
-          a round body is cut differently by the two grids: 0.4/n^2, n cells a radius (what the free bar of physics.md 11 errs by), and 0.3/n^2 a transit of
+          a round body is cut differently by the two grids: 0.4/n^2, n cells a radius (a free bar in a prototype: docs/physics.md 11), and 0.3/n^2 a transit of
           the wave through its smallest extent, as phases drift apart (measured 0.08 to 0.21: a bouncing ball, a jelly that swings, n = 4 to 11)
 Fails     where something breaks the symmetry that the config does not show: buckling, fracture. The way to the walls is looked at after the run
 """

@@ -3,7 +3,7 @@
 rigid    heat is asked for and the body hardly moves: geometry off by a strain e changes Fourier and Biot numbers by 2 e and e, and temperatures by at most
          0.4 of that; error 3 e is an upper estimate. Added are the heat of elastic volume change, and what the particles' own grid is off by:
          0.06 (h/d)^2 Bi/(1 + Bi), d the depth that heat has reached at the first output (at most 0.45 of the way inside), Bi = beta d/kappa. At Fo = 0.2 that
-         is 0.3/n^2 for a held surface; physics.md 11 has 4.1e-3 and 1.0e-3 at n = 8 and 16 for a slab of Bi = 10. No estimate for transfers not affine
+         is 0.3/n^2 for a held surface; docs/physics.md 11 has 3.7e-3 and 8.6e-4 at n = 8 and 16 for a slab of Bi = 10. No estimate for transfers not affine
 no flow  upper estimates of the stress stay below yield; looked at again in the elastic run
 one way  deformation heats by gamma Theta tr(eps)/(R0 alpha), and stiffens waves by eps_c/2, which adds up over their transits
 no heat  nothing of heat is asked for, and neither expansion nor a law of temperature lets it act on motion

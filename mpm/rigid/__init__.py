@@ -1,4 +1,4 @@
-"""Heat in bodies that do not move: an immersed Galerkin method on the scene's grid. No particles, no transfer (physics.md 12, 10).
+"""Heat in bodies that do not move: an immersed Galerkin method on the scene's grid. No particles, no transfer (docs/physics.md 12, 10).
 
     rho alpha(theta) d theta/dt = div(kappa(theta) grad theta),      -kappa d theta/dn = beta (theta - outside)     0 <= beta <= inf
 

@@ -4,7 +4,7 @@
 
 With constant kappa the two sums are one. No step can jump over latent heat, because h is what moves; 1.K = 0 makes sum m h the exchanged heat to round-off.
 (Behind a stiff surface what is below ROUNDOFF is spread evenly over the body.)
-Second order in the cell (exact quadrature, lumped mass: physics.md 12).
+Second order in the cell (exact quadrature, lumped mass: docs/physics.md 12).
 """
 
 from typing import NamedTuple

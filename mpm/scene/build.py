@@ -106,7 +106,7 @@ def elastic_law(model):
 
 
 def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
-    """gamma [Pa/K] = 3 K alpha_L = c lam (physics.md 0)."""
+    """gamma [Pa/K] = 3 K alpha_L = c lam (docs/physics.md 0)."""
     coefficient, gamma = getattr(expansion, "coefficient", None), getattr(expansion, "gamma", None)
     if coefficient is not None:
         return 3 * (elastic.lam + 2 * elastic.mu / 3) * coefficient

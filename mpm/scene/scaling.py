@@ -1,4 +1,4 @@
-"""Slow scenes on a fast clock: time scaling (physics.md 10).
+"""Slow scenes on a fast clock: time scaling (docs/physics.md 10).
 
 With S = time.scale, kappa, beta and every other rate are multiplied by S and eta is divided by it; density, gravity, moduli, M and p0 stay; the run
 ends at end/S. Heat and viscous flow then go through the same states S times sooner, and only inertia differs. What leaves the run is physical again:

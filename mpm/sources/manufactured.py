@@ -1,4 +1,4 @@
-"""Body force and heat source of a manufactured thermoelastic motion: formulae and names as in mpm.verification.manufactured (physics.md 7, problem 9)."""
+"""Body force and heat source of a manufactured thermoelastic motion: formulae and names as in mpm.verification.manufactured (docs/physics.md 7, problem 9)."""
 
 import math
 from typing import NamedTuple

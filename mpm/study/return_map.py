@@ -1,7 +1,7 @@
 """Return maps: error against nanoseconds a state (docs/chart_return_map.png, by `python -m mpm.study.figures return_map`).
 
 States outside the ellipse are held for a time; a map takes it in 1, 2, 4, ... implicit Euler steps. Error: root mean square over the states of (p, q)/M against
-the rate equations (physics.md 5.3), integrated to 1e-10 by a Runge-Kutta method of order 8. Time: least of the rounds, interleaved, per state.
+the rate equations (docs/physics.md 5.3), integrated to 1e-10 by a Runge-Kutta method of order 8. Time: least of the rounds, interleaved, per state.
 The sample: p0 in 0.3 .. 3, K t/eta in 0.1 .. 10, |p|/(p0 M) in 1.05 .. 3, q/M in 0.05 .. 0.95 (so that both maps are defined), even in logarithms.
 """
 

@@ -1,4 +1,4 @@
-"""Three ways to exchange heat at a free surface, measured on bodies at rest (physics.md 3, 10 and 11). `python -m mpm.study.surfaces` prints the table.
+"""Three ways to exchange heat at a free surface, measured on bodies at rest (docs/physics.md 3, 10 and 11). `python -m mpm.study.surfaces` prints the table.
 
 exact     from the boundary particle, corrected to the surface: w~ = w + grad(w) (x_s - x_p). What moving bodies use (mpm.integrate.pieces)
 depth     at the boundary particle, through the layer above it: w, and beta/(1 + beta d/kappa), d = V/(2 S)

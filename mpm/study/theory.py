@@ -1,8 +1,8 @@
 """What transfers do to a field by themselves, measured beside the line of theory: `python -m mpm.study.theory` draws docs/theory.png.
 
-PIC of temperature      each transfer takes (kh)^2/4 of a mode: a fake conductivity R0 alpha h^2/(4 dt), larger for smaller steps (physics.md 3)
-APIC of temperature     each transfer takes 0.024 (kh)^4 with 2 particles a cell (physics.md 3)
-linear basis            particles that cross cells jump in force: at a strain of 0.3 refinement makes it worse (Bardenhagen & Kober 2004; failure-modes 1)
+PIC of temperature      each transfer takes (kh)^2/4 of a mode: a fake conductivity R0 alpha h^2/(4 dt), larger for smaller steps (docs/physics.md 3)
+APIC of temperature     each transfer takes 0.024 (kh)^4 with 2 particles a cell (docs/physics.md 3)
+linear basis            particles that cross cells jump in force: at a strain of 0.3 refinement makes it worse (docs/physics.md 15, mode 1)
 
 Measured: a 1-D insulated body at rest (so soft that heat alone limits the step), theta = cos kx at the start, its amplitude after N heat steps.
 """

@@ -1,4 +1,4 @@
-"""Time of runs, fairly: failure-modes.md section 2.
+"""Time of runs, fairly.
 
 Every setting is warmed first (compiled or loaded, untimed); then whole rounds, A, B, C, A, B, C, so that a busy spell of the machine hits all alike. A timing
 is that of `run_point` without its comparison with the exact solution, set-up included; short runs are repeated within a timing until it lasts LEAST.

@@ -1,4 +1,4 @@
-"""Collect: the points of a sweep on disk to one labelled dataset, `sweep.nc` (interface.md section 3).
+"""Collect: the points of a sweep on disk to one labelled dataset, `sweep.nc`.
 
     /           one number a point: status, error, advice, warnings, outcome, run_id, steps, wall_time, attempts and finals; NaN where a point is not ok
     /series     observables over time; where they exceed SERIES bytes, `file`: which of OUT/series/*.nc holds them for each value along the first dimension

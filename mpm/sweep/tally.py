@@ -144,7 +144,7 @@ def told(found: dict[str, int], warnings: dict[str, int]) -> str:
 
 
 def exit_code(found: dict[str, int], stopped: str) -> int:
-    """interface.md section 2."""
+    """Exit code of a sweep: README.md, "From the shell"."""
     if stopped in EXIT:
         return EXIT[stopped]
     bad = sum(found[STATUS[status]] for status in (FAILED, TIMEOUT, KILLED)) + found["diverged"]

@@ -3,7 +3,7 @@
 A transfer is a pair of linear maps; it knows no physics. With weights w, offsets d = x_node - x_particle:
     scatter   node += w (a + A d) + G grad(w)           a value, a slope and a tensor a particle
     gather    value = sum w u,   slope = sum w u d/(sum w d^2),   gradient = sum u grad(w)
-Momentum, forces, heat, conduction and surface exchange are all of this form (physics.md 3).
+Momentum, forces, heat, conduction and surface exchange are all of this form (docs/physics.md 3).
 
 Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py), then by basis: quadratic ones by rows of lanes (rows.py)
           scatter_scalar, gather_scalar: one scalar field, for heat

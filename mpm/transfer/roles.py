@@ -13,7 +13,7 @@ CHUNK = 64  # particles that pass together: their scratch (45 kB in 3-D float64)
 
 
 class Mls(NamedTuple):
-    """Gradient by moving least squares: grad(w) replaced with 4/h^2 w d (physics.md 3)."""
+    """Gradient by moving least squares: grad(w) replaced with 4/h^2 w d (docs/physics.md 3)."""
 
 
 class Bspline(NamedTuple):

@@ -1,4 +1,4 @@
-"""Adiabatic compression of a thermoelastic point (physics.md 7, problem 3).
+"""Adiabatic compression of a thermoelastic point (docs/physics.md 7, problem 3).
 
 Theta = Theta(0) J^-Gamma,  Gamma = gamma/(R0 alpha):  local heating is the exact adiabat, so any step gives it.
 Order   exact in any step (round-off)

@@ -1,4 +1,4 @@
-"""Cook's membrane: a tapered panel, clamped at its left, sheared along its right end; the static deflection of its tip (failure-modes 11).
+"""Cook's membrane: a tapered panel, clamped at its left, sheared along its right end; the static deflection of its tip (docs/physics.md 15, mode 11).
 
 Corners (0, 0), (48, 44), (48, 60), (0, 44); nominal traction (0, T) on the right; plane strain, nu near 1/2: where volumetric locking shows.
 There is no closed form. The reference is linear elasticity by 9-node elements on a mesh of ELEMENTS x ELEMENTS, exact to 1e-3 of the tip's deflection

@@ -1,4 +1,4 @@
-"""A Gaussian that spreads in an insulated box, by images (physics.md 7, problem 2; gaussian_box_1d.csv).
+"""A Gaussian that spreads in an insulated box, by images (docs/physics.md 7, problem 2; gaussian_box_1d.csv).
 
 theta = cold + rise prod_a phi(x_a, t),   phi = sigma/s sum_k [exp(-(x - 2 k L - c)^2/2 s^2) + exp(-(x - 2 k L + c)^2/2 s^2)],  s^2 = sigma^2 + 2 D t
 The run starts from the solution at t = 0. Total heat is constant.

@@ -1,4 +1,4 @@
-"""A bar of Hencky material in uniaxial strain that starts straight in its first mode (physics.md 7, problem 5).
+"""A bar of Hencky material in uniaxial strain that starts straight in its first mode (docs/physics.md 7, problem 5).
 
 R0 u'' = dP/dX,  P = (lam + 2 mu) ln F/F,  v(X, 0) = V sin(k X),  u = 0 at X = 0;  upper end at the wall (k = pi/L) or free (k = pi/2 L).
 Solved by one Legendre element of POINTS nodes (the free end is natural) and Runge-Kutta steps of order 8: against the tables of problem 5 to 1e-9.

@@ -1,4 +1,4 @@
-"""A rigid body of one temperature that cools through its surface (physics.md 10, 0-D; good for Bi = beta V/(S kappa) < 0.1).
+"""A rigid body of one temperature that cools through its surface (docs/physics.md 10, 0-D; good for Bi = beta V/(S kappa) < 0.1).
 
 Theta = out + (Theta(0) - out) exp(-beta S t/(R0 alpha V)).
 Order   exact in any step (round-off); 2 where alpha depends on temperature

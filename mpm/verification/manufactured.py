@@ -1,4 +1,4 @@
-"""A manufactured thermoelastic motion in 1-D and plane strain (physics.md 7, problem 9).
+"""A manufactured thermoelastic motion in 1-D and plane strain (docs/physics.md 7, problem 9).
 
 u_i = s_i A sin kX_i sin(omega t), s = (1, -1);  Theta = Theta_0 + B prod cos kX_i cos(nu t);  F diagonal, F_i = 1 + d_i u_i
 P_i = [2 mu ln F_i + lam ln J - gamma theta]/F_i,   b_i = u_i'' - d_i P_i/R0

@@ -1,4 +1,4 @@
-"""Stress relaxation of a viscoplastic point at held strain, from a state outside the ellipse (physics.md 5.3; 7, problem 7).
+"""Stress relaxation of a viscoplastic point at held strain, from a state outside the ellipse (docs/physics.md 5.3; 7, problem 7).
 
 dp/dt = -K M^2/eta <f> df/dp,  dq/dt = -3 mu M^2/eta <f> df/dq,  f = sqrt(p^2/p0^2 + q^2)/M - 1 (radial) or |p|/(p0 sqrt(M^2 - q^2)) - 1 (clipped),
 integrated to 1e-12 by a Runge-Kutta method of order 8.

@@ -1,4 +1,4 @@
-"""Reading M, p0 and eta from a compression test, as from a rheometer's curve (food.md 3; scene configs/scenes/dough_rheometer.yaml).
+"""Reading M, p0 and eta from a compression test, as from a rheometer's curve (docs/physics.md 5.4; scene configs/scenes/dough_rheometer.yaml).
 
 What is read: axial stress, axial and lateral strain over time; nothing of the config. Compression at zero lateral stress, then a hold.
 E, nu    slopes of the first sample: before yield

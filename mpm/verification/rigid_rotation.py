@@ -1,4 +1,4 @@
-"""Steady rotation with translation (physics.md 7, problem 10): x = x_c + v t + exp(W t) (X - x_c), no strain.
+"""Steady rotation with translation (docs/physics.md 7, problem 10): x = x_c + v t + exp(W t) (X - x_c), no strain.
 
 The body is elastic: the load of rotation strains it by some R0 Omega^2 R^2/(lam + 2 mu), and it rings about that. The explicit update alone would strain
 by 1/2 Omega^2 dt t; the stress that follows takes that back, so at any cell the error is that of the load.

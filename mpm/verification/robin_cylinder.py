@@ -1,4 +1,4 @@
-"""A long cylinder, or a disc in plane strain, that cools through its side (physics.md 7, problem 1; Carslaw & Jaeger 1959, 7.7).
+"""A long cylinder, or a disc in plane strain, that cools through its side (docs/physics.md 7, problem 1; Carslaw & Jaeger 1959, 7.7).
 
 theta = out + (hot - out) sum C_n exp(-z_n^2 Fo) J0(z_n r/R),  z J1(z) = Bi J0(z),  C = 2 J1/(z (J0^2 + J1^2)).
 Order   2 in the cell (declared 1.7)

@@ -1,4 +1,4 @@
-"""Adiabatic heating of a point that is sheared past its yield stress (physics.md 7, problem 8).
+"""Adiabatic heating of a point that is sheared past its yield stress (docs/physics.md 7, problem 8).
 
 Isochoric stretching without pressure, rate-independent flow: Theta = Theta(0) + chi_d M (eps_eq - M/(3 mu))/(R0 alpha) past yield,
 eps_eq = sqrt(2/3) |eps| the equivalent strain;  q = min(3 mu eps_eq, M).

@@ -1,4 +1,4 @@
-"""A linear thermoelastic wave between insulated walls (physics.md 7, problem 6): numerical damping shows here first.
+"""A linear thermoelastic wave between insulated walls (docs/physics.md 7, problem 6): numerical damping shows here first.
 
 u = U sin kX, theta = T cos kX:  U' = V,  V' = -M k^2/R0 U + gamma k/R0 T,  T' = -gamma Theta_0 k/(R0 alpha) V - kappa k^2/(R0 alpha) T,  M = lam + 2 mu.
 Frequency and damping of a run are those of a exp(-s t) cos(omega t) + b exp(-s t) sin(omega t) + c exp(-r t), fitted to U(t).

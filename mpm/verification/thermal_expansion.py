@@ -1,4 +1,4 @@
-"""Thermal expansion of an elastic point, free in n of its three directions and held in the others (physics.md 7, problem 4).
+"""Thermal expansion of an elastic point, free in n of its three directions and held in the others (docs/physics.md 7, problem 4).
 
 Free directions strain by e = gamma (Theta - Theta_0)/(2 mu + n lam): n = 3 free, 2 plane strain, 1 uniaxial, 0 clamped. Kirchhoff stress of a held one:
 lam n e - gamma (Theta - Theta_0).

@@ -1,4 +1,4 @@
-"""The Hencky bar in uniaxial strain against spectral solutions (physics.md 7, problem 5): order 2 for the motion of a body and of its free end."""
+"""The Hencky bar in uniaxial strain against spectral solutions (docs/physics.md 7, problem 5): order 2 for the motion of a body and of its free end."""
 
 import numpy as np
 import pytest

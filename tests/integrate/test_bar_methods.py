@@ -1,4 +1,4 @@
-"""The free Hencky bar (physics.md 7, problem 5) with the other bases and transfers: order 2, but for hat functions and PIC. All of it slow."""
+"""The free Hencky bar (docs/physics.md 7, problem 5) with the other bases and transfers: order 2, but for hat functions and PIC. All of it slow."""
 
 import itertools
 from pathlib import Path
@@ -64,7 +64,7 @@ def test_second_order(core, basis, transfer, bound):
 
 
 def test_hat_functions_do_not_converge():
-    """Cell crossing (failure-modes 1): between two walls, where every run ends well, refinement makes it worse. 0.083, 0.158, 0.273."""
+    """Cell crossing (docs/physics.md 15, mode 1): between two walls, where every run ends well, refinement makes it worse. 0.083, 0.158, 0.273."""
     runs = [mpm.run_point(mpm.load(HELD, {"grid.basis": "linear", "grid.cell": 1 / n})) for n in (16, 32, 64)]
     errors = [run.finals["error_displacement"] for run in runs]
     assert all(run.outcome.ok for run in runs)

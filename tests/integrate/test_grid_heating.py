@@ -1,4 +1,4 @@
-"""Elastic heating as a term of the heat equation on the grid: what it keeps, and where it is wrong against the adiabat (physics.md 4, step 7)."""
+"""Elastic heating as a term of the heat equation on the grid: what it keeps, and where it is wrong against the adiabat (docs/physics.md 4, step 7)."""
 
 import math
 

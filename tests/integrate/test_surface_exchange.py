@@ -1,4 +1,4 @@
-"""Robin exchange of bodies that cross the grid, against exact series: second order, wherever the body lies (physics.md 11)."""
+"""Robin exchange of bodies that cross the grid, against exact series: second order, wherever the body lies (docs/physics.md 11)."""
 
 import numpy as np
 import pytest

@@ -40,7 +40,7 @@ def test_slab_with_lumped_mass_and_explicit_steps(series, bi):
 
 @pytest.mark.parametrize(("bi", "bound"), [(1.0, 5e-5), (10.0, 3e-4), (np.inf, 6e-4)])
 def test_disc_in_five_steps(series, bi, bound):
-    """physics.md 12: 109 unknowns, five steps of fixed size."""
+    """docs/physics.md 12: 109 unknowns, five steps of fixed size."""
     run = solve([body(Ball((0.013, 0.021), 1.0), bi)], 2, 0.25, end=0.2, method=Method(step=0.04))
     assert run.unknowns <= 120
     assert run.steps == 5

@@ -1,4 +1,4 @@
-"""Critical steps of arrangements: the table of physics.md 6, the safe steps of mpm.integrate.timestep, the theory against whole steps, the old velocity."""
+"""Critical steps of arrangements: those of docs/physics.md 6, the safe steps of mpm.integrate.timestep, the theory against whole steps, the old velocity."""
 
 import numpy as np
 import pytest

@@ -52,7 +52,7 @@ def test_damping_of_temperature_and_velocity(core, order):
 
 
 def test_pic_temperature_conducts_by_itself(core):
-    """Spurious conductivity R0 alpha h^2/(4 dt) (physics.md 3): smaller steps are worse."""
+    """Spurious conductivity R0 alpha h^2/(4 dt) (docs/physics.md 3): smaller steps are worse."""
 
     def wave(scene):
         scene.bodies[0].thermal.theta[:] = np.cos(3 * np.pi * scene.bodies[0].particles.x[:, 0])
