@@ -9,7 +9,7 @@ from mpm.boundary import directions, extents
 from mpm.jit import kernel, role
 from mpm.materials import HenckyWarm, energy, enthalpy, stress, value, warmed
 from mpm.materials.laws import Constant
-from mpm.state import Axisymmetric, Expansion, Latched, Line, NoExchange, Plane, Softening, Thermal, Volume
+from mpm.state import Axisymmetric, Expansion, Latched, Line, NoExchange, Plane, Radiation, Softening, Thermal, Volume
 from mpm.tensors import eigen2, eigen3
 from mpm.transfer import scatter_scalar
 
@@ -149,9 +149,13 @@ def grid_shape(space) -> tuple[int, ...]:
 
 
 def exchanging_area(body) -> float:
-    """Present area of the pieces that exchange heat: J |F^-T A| (Nanson) [m^(D-1), axisymmetric m^2 per radian]."""
+    """Present area of the pieces that exchange heat with what surrounds them now: J |F^-T A| (Nanson) [m^(D-1), axisymmetric m^2 per radian]."""
     if isinstance(body.surface, NoExchange):
         return 0.0
-    surface, owner = body.surface, body.surface.owner
-    normal = np.einsum("sji,sj->si", np.linalg.inv(surface.F.astype(float))[surface.row[owner]], surface.area)
+    surface = body.surface
+    acting = (surface.beta > 0) | (surface.flux != 0)
+    if isinstance(surface.radiation, Radiation):
+        acting |= surface.radiation.emissivity > 0
+    owner = surface.owner[acting]
+    normal = np.einsum("sji,sj->si", np.linalg.inv(surface.F.astype(float))[surface.row[owner]], surface.area[acting])
     return float(body.particles.J[owner].astype(float) @ np.linalg.norm(normal, axis=1))

@@ -57,7 +57,8 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
 
     NoExchange, None where nothing acts and nothing is met.
     """
-    acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side)))]
+    faces = (cut.area == 0.0) | (cut.area > 1e-6 * cut.area.max(initial=0.0))  # corners, by which bodies meet, are no face; shut seams are
+    acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side) & faces))]
     acts = [act for act in acts if len(act.pieces)]
     walls = hot_walls(experiment, sides)
     if not acts and not walls:

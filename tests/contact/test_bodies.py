@@ -149,3 +149,17 @@ def test_the_plan_says_how_bodies_meet():
     told = [refused(**more) for more in ({}, {"contacts": [{"between": ["cold", "hot"], "friction": 0.3, "conductance": 5}]})]
     said = [next(text for text in physics(one)["compiled"] if text.startswith("contact")) for one in told]
     assert said == ["contact: hot and cold slide and pass heat freely (not named)", "contact: hot and cold rub (0.3) and pass heat (5 W/m2K)"]
+
+
+def test_corners_meet_and_exchange_nothing():
+    """A box that can meet a wall has pieces of no area at its corners; air acts on its faces alone."""
+    from mpm.diagnostics import exchanging_area
+
+    scene = boxes(2, 2.0, 0.25, 1.0, BAR | {"heat": {"fourier": {"kappa": 1.0, "alpha": 1.0}}}, box=([0.5, 0.5], [1.1, 0.9], [0.3, 0.0], 400))
+    scene["surfaces"] = [{"of": "box", "convection": {"beta": 5.0, "outside": 300}}]
+    body = build(mpm.load(scene)).bodies[0]
+    corners = np.linalg.norm(body.surface.area, axis=1) < 1e-6
+    assert corners.sum() == 4 and not body.surface.beta[corners].any() and body.surface.beta[~corners].all()
+    found = body.particles.x[body.surface.owner[corners]] + body.surface.offset[corners]
+    assert {tuple(point) for point in np.round(found, 12)} == {(0.5, 0.5), (1.1, 0.5), (0.5, 0.9), (1.1, 0.9)}
+    assert exchanging_area(body) == pytest.approx(2.0, rel=1e-12)
