@@ -31,7 +31,7 @@ def pulled(dimension, law="hencky", cell=0.1, offset=0.3, T=0.1):
         "grid": {"dimension": dimension, "size": [*[0.8, 0.8][: D - 1], 1.5], "cell": cell}, "bodies": {"bar": {"shape": shape, "material": "m"}},
         "materials": {"m": {"density": 1.0, "elastic": {law: {"E": 1.0, "nu": 0.3}}}}, "walls": walls,
         "loads": [{"of": "bar", "side": side, "traction": {"nominal": [0.0] * (D - 1) + [T], "ramp": 5}}, {"of": "bar", "drag": {"rate": 2}}],
-        "time": {"end": 100}, "output": {"every": 50}, "method": {"frame": "total"},
+        "time": {"end": 100 if D < 3 else 300}, "output": {"every": 50}, "method": {"frame": "total"},
     })  # fmt: skip
 
 
