@@ -64,6 +64,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots, shift, len(solved.times))
+    series |= {name: np.full(len(solved.times), total) for name, total in matter(experiment).items()}
     finals = {name: float(values[-1]) for name, values in series.items()}
     finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
     finals["steps"] = float(solved.steps)
@@ -77,6 +78,19 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     look.frames(solved.snapshots, run)
     run.wall_time = solved.spent + time.perf_counter() - began
     return run
+
+
+def matter(experiment) -> dict[str, float]:
+    """Mass and volume of all bodies, where asked for: exact, from their outlines; per radian in an axisymmetric scene, as all that the solver sums."""
+    asked = {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"}
+    totals, grid = dict.fromkeys(sorted(asked), 0.0), experiment.grid
+    edges = [np.arange(round(size / grid.cell) + 1) * grid.cell for size in grid.size]
+    for body in experiment.bodies.values() if asked else ():
+        points, _ = cut_quadrature(shape(body.shape, grid.dimension), edges, 2)
+        volume = float(np.sum(points.w * (points.x[:, 0] if grid.dimension == "axisymmetric" else 1.0)))
+        for name in totals:
+            totals[name] += volume * (experiment.materials[body.material].density if name == "mass" else 1.0)
+    return {f"{name}_total": total for name, total in totals.items()}
 
 
 class Looks:

@@ -1,8 +1,11 @@
 """What every rigid run keeps: the heat ledger, bounds, outputs at any time, crossings, snapshots, and geometry shared between points."""
 
+import math
+
 import numpy as np
 import pytest
 
+import mpm
 from mpm.materials.laws import Bump, Logistic
 from mpm.rigid import Method, RigidBody, solve
 from mpm.rigid.geometry import geometry
@@ -189,3 +192,22 @@ def test_surfaces_by_side():
     b = solve([slab], 1, 0.1, end=0.2, times=[0.2], probes={"p": [1.1]})
     assert a.series["temperature.p"][-1] == pytest.approx(b.series["temperature.p"][-1], abs=1e-9)
     assert a.series["heat_exchanged"][-1] == pytest.approx(0.77 * b.series["heat_exchanged"][-1], rel=1e-9)
+
+
+@pytest.mark.parametrize("dimension, shape, volume", [
+    (1, {"box": {"lower": [0.011], "upper": [0.043]}}, 0.032),
+    (2, {"ball": {"centre": [0.03, 0.03], "radius": 0.02}}, math.pi * 0.02**2),
+    ("axisymmetric", {"ball": {"centre": [0.0, 0.03], "radius": 0.02}}, 4 / 3 * math.pi * 0.02**3),
+    (3, {"ball": {"centre": [0.03, 0.03, 0.03], "radius": 0.02}}, 4 / 3 * math.pi * 0.02**3),
+])  # fmt: skip
+def test_mass_and_volume_of_what_does_not_move(dimension, shape, volume):
+    size = [0.06] * (dimension if isinstance(dimension, int) else 2)
+    data = {
+        "grid": {"dimension": dimension, "size": size, "cell": 0.005},
+        "bodies": {"b": {"shape": shape, "material": "m", "temperature": 300}},
+        "materials": {"m": {"density": 800, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
+        "time": {"end": 1.0},
+        "output": {"observables": ["mass.total", "volume.total"]},
+    }
+    run = mpm.run_point(mpm.load(data))
+    assert run.finals["volume_total"] == pytest.approx(volume, rel=1e-4) and run.finals["mass_total"] == pytest.approx(800 * volume, rel=1e-4)
