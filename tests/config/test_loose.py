@@ -36,11 +36,14 @@ def test_nothing_at_all():
 
 @pytest.mark.parametrize("scene", ["loaf", "block"])
 def test_values_that_no_rule_reads(scene, request):
-    """Points of a sweep that change only these are not checked again: so no rule may touch them."""
+    """Points of a sweep that change only these are not checked again: so no rule may touch them.
+
+    But for one: whether a surface exchanges with what does not conduct is looked at where the config is read, and by each point as it runs (scene/exchange.py).
+    """
     data = request.getfixturevalue(scene)
     experiment = Experiment.model_validate(data)
-    free = [path for path, slot in leaves(ROOT, experiment) if unread(path, slot)]
-    assert len(free) > 3
+    free = [path for path, slot in leaves(ROOT, experiment) if unread(path, slot) and path[-1] not in ("kappa", "beta", "emissivity")]
+    assert len(free) >= 2
 
     class Read(Exception):
         pass
