@@ -149,7 +149,7 @@ def warm(experiment) -> None:
 
         experiment = likely(experiment)
     short = experiment.resolved()
-    if experiment.moving:
+    if experiment.moving and experiment.grid.dimension != 0:
         from mpm.total.drive import present_limits
 
         scene, clock = at_start(experiment)
