@@ -117,7 +117,7 @@ def test_contact_turns_a_body_back(core):
     body = {"shape": {"box": {"lower": [0.5], "upper": [1.25]}}, "temperature": core.HOT, "material": "solid", "velocity": [-0.4]}
     changes = {"kappa": 1e-6, "time.end": 4.0, "method.particles": 4, "grid.cell": 0.0625}
     run = core.play(core.experiment(1, changes, bodies={"body": body}, walls={"left": "contact"}))[1]
-    assert run.outcome.ok and run.series["position_min_x"].min() > 0
+    assert run.outcome.ok and run.series["position_min_x"].min() > -0.01 * 0.0625  # of the outline, fitted to the particles: 0.01 cells
     assert run.series["momentum_x"][-1] > -0.8 * run.series["momentum_x"][0]
 
 
