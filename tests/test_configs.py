@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import mpm
+from mpm import compiling
 
 ROOT = Path(__file__).parent.parent / "configs"
 CONFIGS = sorted(path for path in ROOT.rglob("*.yaml"))
@@ -60,10 +61,10 @@ def test_its_short_form_runs(path):
     from mpm.runner import warm
 
     warm(point)
-    began = time.process_time()
+    began, compiled = time.process_time(), compiling.seconds()
     run = mpm.run_point(point)
     assert run.outcome.ok, run.outcome
-    assert time.process_time() - began < 10
+    assert time.process_time() - began - (compiling.seconds() - compiled) < 10  # bodies that meet on the way compile their contact then
     assert run.times[-1] == pytest.approx(point.time.end)
     if "heat_ledger" in run.series:
         assert abs(run.series["heat_ledger"]).max() <= 1e-12 * heat_scale(point, run)
