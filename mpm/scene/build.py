@@ -129,7 +129,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
     cut, edges, outline = sample(experiment, config, most)
-    cut = cornered(cut, experiment.grid.cell) if meets else cut
+    faces, cut = cut, cornered(cut, experiment.grid.cell) if meets else cut
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -162,7 +162,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
         fraction = material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
-    source = loaded(experiment, name, cut, space, gradient_operator(experiment))
+    source = loaded(experiment, name, faces, space, gradient_operator(experiment))
     return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams, outline
 
 
