@@ -107,8 +107,8 @@ def test_two_radiations_at_one_place_are_refused():
 
 
 def test_no_conduction_no_exchange():
-    with pytest.raises(SceneError, match="conductivity"):
-        build(bar([{"convection": {"beta": 1, "outside": 300}}], kappa=0.0))
+    with pytest.raises(mpm.ConfigError, match="conducts no heat"):
+        bar([{"convection": {"beta": 1, "outside": 300}}], kappa=0.0)
 
 
 def pan(lower, beta=50.0, air=True):
