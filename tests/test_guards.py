@@ -125,7 +125,10 @@ def test_energy_from_nowhere_ends_a_run(core):
                 velocity *= factor
             return False
 
-        return core.play(core.experiment(1, quiet, drop=("surfaces", "expansion", "heating")), begin, beat)[1]
+        box = {"box": {"lower": [3.6], "upper": [4.35]}}  # so far from all walls that it meets none
+        centred = {"body": {"shape": box, "temperature": core.HOT, "material": "solid"}}
+        grid = {"dimension": 1, "size": [8.0], "cell": 0.25}
+        return core.play(core.experiment(1, quiet, drop=("surfaces", "expansion", "heating"), bodies=centred, grid=grid), begin, beat)[1]
 
     assert play(1.0).outcome.ok
     for factor in (10.0, 2.0):

@@ -23,7 +23,14 @@ def test_the_same_run_twice_gives_the_same_bits(core):
 
 
 def neutral(core, dimension):
-    """Mechanics alone, and the same with heat that does nothing, also by zeros of exchange and coupling: the same bits in every field and series of both."""
+    """Mechanics alone, and the same with heat that does nothing, also by zeros of exchange and coupling: the same numbers in every field and series of both.
+
+    To a few units in the last place: the two are different kernels, each optimised whole (mpm.linking), and the optimiser may associate a sum otherwise where
+    other physics stands beside it. (Compiled by Numba's own way, function by function, they agree to the last bit.)
+    """
+
+    def same(a, b):
+        return np.allclose(a, b, rtol=1e-13, atol=4 * np.finfo(float).eps * max(1e-300, np.abs(b).max()))
 
     def stir(scene):
         p = scene.bodies[0].particles
@@ -38,10 +45,10 @@ def neutral(core, dimension):
         a, b = warm.bodies[0].particles, cold.bodies[0].particles
         assert np.ptp(a.J) > 1e-3
         for name in ("x", "v", "C", "B", "J"):
-            assert np.array_equal(getattr(a, name), getattr(b, name)), (name, np.abs(getattr(a, name) - getattr(b, name)).max())
+            assert same(getattr(a, name), getattr(b, name)), (name, np.abs(getattr(a, name) - getattr(b, name)).max())
         assert len(other.series) > 10 and not any(name.startswith(("heat", "temperature")) for name in other.series)
         for name, values in other.series.items():
-            assert np.array_equal(run.series[name], values), name
+            assert same(run.series[name], values), name
 
 
 def test_physics_left_out_is_neutral(core):
@@ -164,7 +171,7 @@ def two(core, names, velocities=(0.6, 0.0), places=(0.6, 1.5)):
     surfaces = [{"of": "dough", "convection": {"beta": 0.5, "outside": 300}}] if "dough" in names else []
     return core.experiment(
         1,
-        {"time.step": 0.02, "method.heat_step": 0.1},
+        {"time.step": 0.02, "method.heat_step": 0.1, "time.end": 1.5},
         grid={"dimension": 1, "size": [4.5], "cell": 0.25},
         bodies=bodies,
         materials={name: materials[name] for name in bodies},
@@ -173,7 +180,7 @@ def two(core, names, velocities=(0.6, 0.0), places=(0.6, 1.5)):
 
 
 def test_two_bodies_meet(core):
-    """They exchange momentum through the grid and nothing is lost; the flowing one dissipates, and its heat is accounted for."""
+    """They exchange momentum where they touch and nothing is lost; the flowing one dissipates, and its heat is accounted for."""
     scene, run = core.play(two(core, ("dough", "rubber")))
     assert run.outcome.ok
     assert np.allclose(run.series["momentum_x"], run.series["momentum_x"][0], rtol=1e-13)
