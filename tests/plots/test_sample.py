@@ -25,7 +25,7 @@ def test_scatter_a_parameter_and_bars(tree, tmp_path):
     kappa, beta, eta, bars = fig.axes
     assert [ax.get_xscale() for ax in (kappa, beta, eta)] == ["log", "log", "linear"]
     assert [ax.get_xlabel() for ax in (kappa, beta, eta)] == ["κ [W/m/K]", "β [W/m²/K]", "η [Pa s]"]
-    assert kappa.get_ylabel() == "Extent along x [mm]"
+    assert kappa.get_ylabel().split() == "Extent of the material along x [mm]".split()
     assert len(kappa.lines[1].get_xdata()) == 1  # the cross of the point that diverged
     assert fig.legends[0].get_texts()[0].get_text() == "diverged: det F ≤ 0 (1 point)"
     assert bars.get_title(loc="left") == "Rank correlation, n = 31"
