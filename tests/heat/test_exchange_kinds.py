@@ -9,7 +9,7 @@ import mpm
 from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import Sine, at, bounds, longest
 from mpm.materials import table
-from mpm.scene.build import SceneError, build
+from mpm.scene.build import build
 
 OVEN = {"table": {"time": [0, 0.2, 0.5], "value": [300, 500, 400]}}
 SINE = {"sine": {"mean": 350, "amplitude": 40, "period": 0.4}}
@@ -102,8 +102,8 @@ def test_moving_and_rigid_agree():
 
 def test_two_radiations_at_one_place_are_refused():
     twice = [{"radiation": {"emissivity": 0.5, "surroundings": 600}}] * 2
-    with pytest.raises(SceneError, match="merge them"):
-        build(bar(twice))
+    with pytest.raises(mpm.ConfigError, match="'bar' has a radiation there already"):
+        bar(twice)
 
 
 def test_no_conduction_no_exchange():
