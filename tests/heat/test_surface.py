@@ -45,6 +45,7 @@ def test_areas_and_volumes_of_a_scene(core, name):
     changes = {"bodies": {"body": {"shape": shape, "temperature": 400, "material": "solid"}}}
     body = build(core.experiment(dimension, **changes)).bodies[0]
     pieces = np.linalg.norm(body.surface.area, axis=1)
+    pieces = pieces[pieces > 1e-6 * pieces.max()]  # less the corners by which bodies meet, which are no faces
     assert pieces.sum() == pytest.approx(area, rel=5e-3 if "sphere" in name or name == "disc" else 1e-10)
     assert body.particles.V0.sum() == pytest.approx(volume, rel=1e-3 if "sphere" in name or name == "disc" else 1e-10)
     assert body.particles.m.sum() == pytest.approx(2.0 * volume, rel=1e-3 if "sphere" in name or name == "disc" else 1e-10)
