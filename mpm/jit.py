@@ -32,7 +32,7 @@ INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled 
 CACHE = cache.private(f"numba-{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}")
 
 if not linking.install():
-    cache.say(f"numba {numba.__version__} was not tried with mpm ({linking.tried()} were): compiling takes three times as long")
+    cache.say(f"numba {numba.__version__} was not tried with mpm ({linking.tried()} were): compiling takes two to three times as long")
 
 
 class Sealed(IndexDataCacheFile):

@@ -24,7 +24,7 @@ from numba.core.targetconfig import TargetConfig
 
 from mpm import compiling
 
-TESTED = (0, 66), (0, 68)  # first and last (major, minor) whose internals were tried with the whole test suite
+TESTED = (0, 66), (0, 68)  # first and last (major, minor) tried: the last by the default tests, the first by tests/test_linking.py alone
 
 
 class Building(threading.local):
