@@ -135,7 +135,7 @@ ELSEWHERE = {
     "act(Load)", "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/integrate/test_load.py, tests/heat/test_exchange_kinds.py
     "react_plane(NeoHookean)", "react_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
-    "warms(NoHeating)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
+    "warms(NoHeating)", "carry_surface(NoExchange)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
     "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
     *(f"{way}_by_law({law})" for way in ("explicit", "stabilised", "implicit") for law in ("Table", "Logistic")),  # tests/integrate/test_implicit_heat.py
     "explicit_by_law(Constant)",  # the same
