@@ -9,7 +9,8 @@ Fails when: a scene stiffens or speeds up, so that its steps are not those of it
 import math
 
 from mpm.config.rules_size import MOST_UNKNOWNS
-from mpm.scene.inventory import output_bytes, physics
+from mpm.records.frames import SPILL
+from mpm.scene.inventory import output_bytes, physics, ticks
 
 # Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
 LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
@@ -42,10 +43,18 @@ def memory(experiment) -> int:
     if experiment.grid.dimension == 0:
         return BYTES_PROCESS["point"]
     particles, nodes = counted(experiment)
-    fields = 3 * output_bytes(experiment, particles)  # as they are collected, joined and packed
+    fields = 3 * held_bytes(experiment, particles)  # as they are collected, joined and packed
     if not experiment.moving:
         return estimate_rigid(experiment)["memory_bytes"] + fields
     return BYTES_PROCESS["moving"] + particles * bytes_particle(experiment) + nodes * bytes_node(experiment) + fields
+
+
+def held_bytes(experiment, particles: int) -> int:
+    """Bytes of output that a run holds: all that is no snapshot of particles, and of these SPILL and one (mpm.records.frames)."""
+    everything, rest = output_bytes(experiment, particles), output_bytes(experiment, 0)
+    snapshots = experiment.output.snapshots
+    one = (everything - rest) / ticks(experiment.time.end, snapshots.every) if snapshots is not None else 0
+    return round(min(everything, rest + SPILL + one))
 
 
 def bytes_particle(experiment) -> int:
@@ -78,7 +87,7 @@ def memory_at_most(experiment) -> int:
     else:
         count = math.prod(cells)
         body = BYTES_PROCESS["rigid"] + 8 * count * (3 * count // max(cells) + 5**grid.directions * 6)  # matrices, and a band of the smaller sides
-    return body + 3 * output_bytes(experiment, count if experiment.moving else 0)
+    return body + 3 * held_bytes(experiment, count if experiment.moving else 0)
 
 
 def count_particles(experiment) -> int:

@@ -33,9 +33,9 @@ def particle_fields(scene, origins) -> dict[str, np.ndarray]:
     fields = {}
     for name in scene.watch.particles:
         if name == "body":
-            fields[name] = np.concatenate([np.full(len(body.particles.m), k) for k, body in enumerate(scene.bodies)])
+            fields[name] = np.concatenate([np.full(len(body.particles.m), k, np.int32) for k, body in enumerate(scene.bodies)])
         elif name == "id":
-            fields[name] = np.arange(sum(len(body.particles.m) for body in scene.bodies))
+            fields[name] = np.arange(sum(len(body.particles.m) for body in scene.bodies), dtype=np.int32)
         else:
             fields[name] = np.concatenate([np.array(made[name](body, X)) for body, X in zip(scene.bodies, origins, strict=True)])
     return fields

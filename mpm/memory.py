@@ -6,6 +6,7 @@ business (mpm.records.checkpoint). They ask a keeper, which is None where nobody
     keeper.found        the memory of the same run, cut earlier; None to start from the start
     keeper.due(stop)    whether to save now: some time has passed since the last, or the run is told to stop
     keeper.save(memory)
+    keeper.frames       where its snapshots go, if the keeper has a place for them: `Frames` or what does the same
 """
 
 from dataclasses import dataclass, field
@@ -36,9 +37,44 @@ def rows(values: list) -> np.ndarray:
     return np.array(values)
 
 
+class Frames:
+    """Snapshots of a run, in memory: (time [s], fields on the grid, fields of particles) each. A keeper may bring others (mpm.records.frames)."""
+
+    def __init__(self):
+        self.held: list[tuple[float, dict, dict]] = []
+
+    @property
+    def times(self) -> np.ndarray:
+        """When they were taken [s]."""
+        return np.array([when for when, _, _ in self.held])
+
+    def add(self, when: float, grid: dict, particles: dict) -> None:
+        """One more."""
+        self.held.append((when, grid, particles))
+
+    def drop(self) -> None:
+        """Take back the last."""
+        self.held.pop()
+
+    def clear(self) -> None:
+        """Begin again."""
+        self.held.clear()
+
+    def memory(self) -> Any:
+        """Plain data from which `recall` has them again."""
+        return [{"time": when, "grid": grid, "particles": particles} for when, grid, particles in self.held]
+
+    def recall(self, found: Any) -> None:
+        """As they were when `memory` was kept."""
+        self.held = [(frame["time"], frame["grid"], frame["particles"]) for frame in found]
+
+
 @dataclass
 class Turn:
-    """The keeper of one of several runs that a point makes one after another. On the way to the one that was cut, those before it run again."""
+    """The keeper of one of several runs that a point makes one after another. On the way to the one that was cut, those before it run again.
+
+    It has no place for snapshots: these runs hold theirs in memory, and in the checkpoint.
+    """
 
     keeper: Any
     number: int

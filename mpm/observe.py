@@ -5,6 +5,7 @@ Crossings (`time_to`) are looked for after every heat step, linear in between.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,7 +16,7 @@ from mpm.diagnostics import capacities, exchanging_area, grid_shape, heat_since,
 from mpm.error import Errors
 from mpm.fields import cauchy, particle_fields
 from mpm.follow import moved, nearest, renumbered, sampled
-from mpm.memory import rows
+from mpm.memory import Frames, rows
 from mpm.outcome import Outcome
 from mpm.records.variables import parts
 from mpm.state import PAD, Axisymmetric, Run, Thermal
@@ -40,6 +41,7 @@ class Watch:
     grid: tuple[str, ...] = ()
     particles: tuple[str, ...] = ()
     exact: Any = None
+    shown: Callable[[float, dict, dict], tuple[float, dict, dict]] = lambda *frame: frame  # a snapshot as it leaves the run (mpm.scene.scaling.shown)
 
 
 def near(times: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -73,14 +75,15 @@ def axis_names(space) -> tuple[str, ...]:
 class Recorder:
     """Collects a run's records and turns them into a Run."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, frames: Frames | None = None):
         self.scene = scene
         self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
         self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
         self.capacity = np.concatenate([capacities(body) for body in self.warm]) if self.warm else None  # (N,) at the start [J/K]
         self.times: list[float] = []
+        self.shot = math.nan  # when the last snapshot was taken, on the run's clock
         self.series: dict[str, list[float]] = {}
-        self.frames: list[tuple[float, dict, dict]] = []
+        self.frames = Frames() if frames is None else frames
         places = [body.particles.x for body in scene.bodies] if not scene.references else [reference.X for reference in scene.references]
         self.begun = [x.astype(float) for x in places] if scene.watch.particles else []  # where particles were at the start
         self.places = {name: self.place(scene, name) for name in scene.watch.probes}
@@ -129,27 +132,27 @@ class Recorder:
         """A snapshot, where one is due."""
         due = scene.watch.snapshots
         for when in due[np.isclose(due, clock.time, rtol=1e-9, atol=1e-12 * scene.times[-1])]:
-            self.frames.append((float(when), grid_fields(scene), particle_fields(scene, self.begun)))
+            self.frames.add(*scene.watch.shown(float(when), grid_fields(scene), particle_fields(scene, self.begun)))
+            self.shot = clock.time
 
     def drop(self) -> None:
         """Take back the last record: what it shows is no good."""
         when = self.times.pop()
         for values in self.series.values():
             values.pop()
-        if self.frames and math.isclose(self.frames[-1][0], when, rel_tol=1e-9):
-            self.frames.pop()
+        if self.shot == when:
+            self.frames.drop()
 
     def memory(self) -> dict:
         """What was recorded so far (mpm.memory)."""
-        frames = [{"time": when, "grid": grid, "particles": particles} for when, grid, particles in self.frames]
-        return {"times": rows(self.times), "series": {name: rows(values) for name, values in self.series.items()}, "frames": frames,
+        return {"times": rows(self.times), "series": {name: rows(values) for name, values in self.series.items()}, "frames": self.frames.memory(),
                 "crossed": self.crossed, "seen": {probe: list(pair) for probe, pair in self.seen.items()},
                 "sums": self.errors.sums if self.errors is not None else {}}  # fmt: skip
 
     def recall(self, found: dict) -> None:
         """As it was when `memory` was kept."""
         self.times, self.series = found["times"].tolist(), {name: values.tolist() for name, values in found["series"].items()}
-        self.frames = [(frame["time"], frame["grid"], frame["particles"]) for frame in found["frames"]]
+        self.frames.recall(found["frames"])
         self.crossed, self.seen = found["crossed"], {probe: tuple(pair) for probe, pair in found["seen"].items()}
         if self.errors is not None:
             self.errors.sums = found["sums"]
@@ -258,11 +261,14 @@ class Recorder:
             finals |= self.errors.finals(np.array(self.times), series)
         finals["steps"] = float(clock.steps or clock.heat_steps)
         run = Run(result, np.array(self.times), series, finals, steps=clock.steps, wall_time=wall_time, facts=facts)
-        if self.frames:
-            run.snapshot_times = np.array([t for t, _, _ in self.frames])
-            run.grid = {name: np.stack([grid[name] for _, grid, _ in self.frames]) for name in self.frames[0][1]}
-            run.particles = [particles for _, _, particles in self.frames]
-            if run.grid:
+        if len(times := self.frames.times):
+            held, run.snapshot_times = self.frames.held, times
+            if held:
+                run.grid = {name: np.stack([grid[name] for _, grid, _ in held]) for name in held[0][1]}
+                run.particles = [particles for _, _, particles in held]
+            else:
+                run.frames = self.frames
+            if scene.watch.grid:
                 run.axes = {name: np.arange(n - 2 * PAD) * scene.space.h for name, n in zip(axis_names(scene.space), grid_shape(scene.space), strict=True)}
         return run
 

@@ -65,12 +65,12 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
         run = run_zero(experiment, exact if compare else None, beat, keeper)
     elif experiment.moving:
         from mpm.scene.build import build
-        from mpm.scene.scaling import physical
+        from mpm.scene.scaling import physical, shown
         from mpm.simulation import simulate
 
         scene = build(experiment, exact)
         scene.watch.exact = scene.watch.exact if compare else None
-        scene.threads = threads
+        scene.threads, scene.watch.shown = threads, shown(experiment)
         run = physical(simulate(scene, beat, keeper), experiment)
         shared = scene.order.shared
     else:
@@ -88,10 +88,10 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
 
 
 def whole(run: Run, dimension) -> Run:
-    """The run with the totals of the whole body: what an axisymmetric scene computes is per radian."""
+    """The run with the totals of the whole body: what an axisymmetric scene computes is per radian. Snapshots are so already (mpm.scene.scaling.shown)."""
     factor = turn(dimension)
     if factor != 1.0:
-        for found in (run.series, run.finals, *run.particles):
+        for found in (run.series, run.finals):
             found |= {name: values * factor for name, values in found.items() if is_total(name)}
     return run
 
@@ -121,7 +121,8 @@ def complete(experiment, run: Run) -> Run:
     wanted = [(f"observables.{name}", dataset_name(name) in have) for name in output.observables]
     more = {found[1] for found in map(probed, output.observables) if found is not None}
     wanted += [(f"probes.{name}", name in more or f"temperature_{name}" in have) for name in output.probes]
-    for kind, fields in (("grid", run.grid), ("particles", run.particles[0] if run.particles else {})) if shots is not None else ():
+    grid, particles = run.frames[0][1:] if run.frames is not None else (run.grid, run.particles[0] if run.particles else {})
+    for kind, fields in (("grid", grid), ("particles", particles)) if shots is not None else ():
         stems = {*fields, *(name.rpartition("_")[0] for name in fields)}  # a vector has a field a direction
         wanted += [(f"snapshots.{kind}.{name}", name in stems) for name in getattr(shots, kind)]
     lacking = [name for name, there in wanted if not there]

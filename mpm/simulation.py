@@ -125,7 +125,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     `beat(fraction, time) -> bool` is asked between blocks; true stops the run. keeper: mpm.memory; the run goes on where it was cut, with the same bits.
     """
     began = time.perf_counter()
-    clock, recorder, guards = Clock(scene), Recorder(scene), Guards(scene)
+    clock, recorder, guards = Clock(scene), Recorder(scene, getattr(keeper, "frames", None)), Guards(scene)
     buffers = None if scene.references else work_arrays(scene)
     result, before = outcome(COMPLETED), keeper.found if keeper is not None else None
     if before is not None:
@@ -138,6 +138,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         if scene.meeting is not None:
             scene.meeting.recall(before["meeting"])
     else:
+        recorder.frames.clear()
         recorder.record(scene, clock)
         result = guards.frame(scene, clock, recorder.series)
 

@@ -244,6 +244,7 @@ class Run:
     snapshot_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
     grid: dict[str, np.ndarray] = field(default_factory=dict)
     particles: list[dict[str, np.ndarray]] = field(default_factory=list)
+    frames: Any = None  # in the place of grid and particles where snapshots went to a file as they were made (mpm.records.frames)
     steps: int = 0
     wall_time: float = 0.0
     facts: dict = field(default_factory=dict)

@@ -56,4 +56,4 @@ def test_bytes_are_of_frames_that_exist(core):
         experiment = core.experiment(1, output={"every": 0.1, "snapshots": {"every": every, "particles": ["position"]}})
         return output_bytes(experiment, 1000) - output_bytes(core.experiment(1, output={"every": 0.1}), 1000)
 
-    assert [counted(every) / 16_000 for every in ASKED] == [len(times) for times in ASKED.values()]
+    assert [counted(every) / 24_000 for every in ASKED] == [len(times) for times in ASKED.values()]

@@ -31,16 +31,19 @@ def moving(dimension):
     """What a run records of the ball, thrown upwards, swollen by 1 % in each direction and 10 K warmer; no step is taken."""
     from mpm.observe import Recorder
     from mpm.scene.build import build
+    from mpm.scene.scaling import shown
     from mpm.simulation import Clock
 
     data = ball(dimension, elastic={"hencky": {"E": 1e5, "nu": 0.3}})
     data["bodies"]["b"]["velocity"], data["gravity"] = [*([0.0] * (len(CENTRE[dimension]) - 1)), 0.5], [*([0.0] * (len(CENTRE[dimension]) - 1)), -9.81]
-    scene = build(mpm.load(data))
+    experiment = mpm.load(data)
+    scene = build(experiment)
     recorder, body, clock = Recorder(scene), scene.bodies[0], Clock(scene)
     body.particles.B[:, :3], body.particles.J[:], body.surface.F[:] = 1.01**2 - 1, 1.01**3, 1.01 * np.eye(len(CENTRE[dimension]))
     body.thermal.theta[:] += 10
     series = {name: np.array([value]) for name, value in (*recorder.mechanical(scene, clock), *recorder.thermal(scene, clock))}
-    return whole(Run(None, np.zeros(1), series, {}, particles=[{"mass": body.particles.m, "J": body.particles.J}]), dimension)
+    fields = shown(experiment)(0.0, {}, {"mass": body.particles.m, "J": body.particles.J})[2]
+    return whole(Run(None, np.zeros(1), series, {}, particles=[fields]), dimension)
 
 
 def test_a_ball_that_moves_is_one_ball():

@@ -22,7 +22,7 @@ from mpm.records.point import PACKED, Record
 
 def fits(record: Record) -> bool:
     """Whether a record may join a batch: fields are large, and stay in a file of their own."""
-    return not record.grid and not record.particles and not len(record.snapshot_times)
+    return not record.grid and not record.particles and not len(record.snapshot_times) and record.frames is None
 
 
 def pack_batch(records: list[Record]) -> bytes:

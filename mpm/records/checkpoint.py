@@ -5,6 +5,7 @@
 
 Saved every so many seconds of wall time, and when the run is told to stop; a run that ends before that writes nothing. The seal is checked before a
 byte is looked at. What other source, other versions or another processor made is not gone on with: the bits would differ.
+Snapshots that lie in the run's own file (records.frames) are not in the checkpoint again: it says how many there are.
 A checkpoint that cannot be written costs the run nothing but the checkpoint, and is told.
 """
 
@@ -15,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.records.frames import Stream
 from mpm.records.netcdf import DamagedFile, seal, set_aside, unseal, write_whole
 from mpm.records.provenance import now, processor, source_hash, versions
 
@@ -74,6 +76,7 @@ class Checkpoint:
         self.line = {"run_id": run_id, "source": source_hash(), "versions": versions(), "processor": processor()}
         self.there = False  # whether a file may be there
         self.cost = 0.0
+        self.frames = Stream(self.path.with_suffix(".frames"))
         self.found = self.read()
         self.last = time.monotonic()
 
@@ -95,6 +98,10 @@ class Checkpoint:
         if other:
             self.note(f"{self.path}: from other {' and '.join(other)}; the run starts from its start")
             return None
+        frames = memory.get("recorder", {}).get("frames") if isinstance(memory, dict) else None
+        if frames and not self.frames.kept(frames):
+            self.note(f"{self.frames.path}: it does not hold what the checkpoint says; the run starts from its start")
+            return None
         self.note(f"{self.path}: the run goes on from what was saved at {line.get('saved', 'an unknown time')}")
         return memory
 
@@ -115,7 +122,8 @@ class Checkpoint:
         self.cost = self.last - began
 
     def drop(self) -> None:
-        """The run is over: forget."""
+        """The run is over: forget. Frames that have become the point's are elsewhere by now."""
+        self.path.with_suffix(".frames").unlink(missing_ok=True)
         if self.there:
             self.path.unlink(missing_ok=True)
             self.there = False

@@ -73,10 +73,16 @@ def attribute(value: Any) -> Any:
 
 def to_bytes(groups: dict[str, Group], attrs: dict[str, Any]) -> bytes:
     """A NetCDF-4 file; `groups` by path, "/" first. Each has dimensions of its own, so that it can be opened alone."""
+    buffer = io.BytesIO()
+    write_groups(buffer, groups, attrs)
+    return buffer.getvalue()
+
+
+def write_groups(target: Any, groups: dict[str, Group], attrs: dict[str, Any]) -> None:
+    """The same into an open file."""
     import h5netcdf
 
-    buffer = io.BytesIO()
-    with h5netcdf.File(buffer, "w") as file:
+    with h5netcdf.File(target, "w") as file:
         for name, value in attrs.items():
             file.attrs[name] = attribute(value)
         for path, group in groups.items():
@@ -84,7 +90,6 @@ def to_bytes(groups: dict[str, Group], attrs: dict[str, Any]) -> bytes:
             target.dimensions = group.sizes()
             for name, variable in group.variables.items():
                 put(target, name, variable, lengths)
-    return buffer.getvalue()
 
 
 def chunks(group: Group) -> dict[str, int]:
@@ -98,7 +103,8 @@ def chunks(group: Group) -> dict[str, int]:
     for variable in group.variables.values():
         if any(set(variable.dims) < set(dims) for dims in every):
             continue
-        size = np.asarray(variable.data).itemsize * math.prod(sizes[dim] for dim in variable.dims if dim in WHOLE)
+        data = variable.data if hasattr(variable.data, "itemsize") else np.asarray(variable.data)
+        size = data.itemsize * math.prod(sizes[dim] for dim in variable.dims if dim in WHOLE)
         for dim in [dim for dim in reversed(variable.dims) if dim not in WHOLE]:
             lengths[dim] = max(lengths[dim], cut(sizes[dim], math.ceil(CHUNK / max(1, size))))
             size *= lengths[dim]
@@ -113,9 +119,12 @@ def cut(size: int, least: int) -> int:
 
 def put(group: Any, name: str, variable: Array, lengths: dict[str, int]) -> None:
     """Write one variable in chunks of these lengths; numbers compressed and checksummed, text and single numbers as they are."""
-    data = np.asarray(variable.data)
+    data = variable.data if hasattr(variable.data, "make") else np.asarray(variable.data)
     how: dict[str, Any] = {"chunks": tuple(lengths[dim] for dim in variable.dims)} if data.size and data.ndim else {}
-    if data.dtype.kind in "OU":
+    if not isinstance(data, np.ndarray):  # records.large.Parts
+        target = group.create_variable(name, variable.dims, dtype=data.dtype, **(how | PACKED | {"compression_opts": 1} if how else {}))
+        data.fill(target)
+    elif data.dtype.kind in "OU":
         import h5py
 
         text = np.array([storable(str(value)) for value in data.ravel()], dtype=object).reshape(data.shape)
@@ -133,9 +142,9 @@ def seal(body: bytes | list, line: dict) -> bytes:
     return b"".join([*parts, text, closing(text, *parts, text)])
 
 
-def closing(text: bytes, *parts: bytes | memoryview) -> bytes:
-    """The last TAIL bytes of a sealed file whose line is `text`, and whose `parts` one after another are all before them."""
-    digest = hashlib.sha256()
+def closing(text: bytes, *parts: bytes | memoryview, digest: Any = None) -> bytes:
+    """The last TAIL bytes of a sealed file whose line is `text`, and whose `parts` one after another are all before them, after what `digest` has seen."""
+    digest = digest or hashlib.sha256()
     for part in parts:
         digest.update(part)
     return f"\n{digest.hexdigest()}\n{zlib.crc32(text):08x}{len(text):08x}".encode()

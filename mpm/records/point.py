@@ -5,6 +5,7 @@ thousands and `collect` turns them into the labelled dataset. The seal's line ca
 
 line    run_id, status, error, outcome, advice, warned, steps, wall_time, attempts, source, started, finished
 file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,] [y,] x), axes/<x>, particles/<field> (obs, ...), particles/row_size (S)
+        or attribute `frames`: bytes of the file <run id>.frames beside it, which has grid and particles
         attribute `names`: JSON with the names of series and finals; `facts` and `config`: JSON
 """
 
@@ -16,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from mpm.records.netcdf import seal, unseal
+from mpm.records.frames import Entries
+from mpm.records.netcdf import DamagedFile, seal, unseal
 from mpm.records.variables import DIVERGED, OK, STATUS, TIMEOUT, describe
 from mpm.warned import kinds
 
@@ -48,6 +50,7 @@ class Record:
     grid: dict[str, np.ndarray] = field(default_factory=dict)
     particles: dict[str, np.ndarray] = field(default_factory=dict)
     row_size: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    frames: Any = None  # in the place of grid and particles where they lie in a file beside the point's (records.frames)
     facts: dict = field(default_factory=dict)
     config: dict = field(default_factory=dict)
 
@@ -90,6 +93,7 @@ def from_run(run_id: str, run: Any, **calls: Any) -> Record:
         grid=dict(run.grid),
         particles={name: np.concatenate([np.asarray(rows[name]) for rows in run.particles]) for name in fields},
         row_size=np.asarray(sizes, dtype=np.int64),
+        frames=run.frames,
         facts=dict(run.facts),
         **calls,
     )
@@ -123,6 +127,8 @@ def pack(record: Record) -> bytes:
             put(f"particles/{name}", values)
         if record.particles:
             put("particles/row_size", record.row_size)
+        if record.frames is not None:
+            file.attrs["frames"] = record.frames.ends[-1]
         file.attrs["names"] = json.dumps({"series": list(record.series), "finals": list(record.finals)})
         file.attrs["facts"] = json.dumps(record.facts)
         file.attrs["config"] = json.dumps(record.config)
@@ -132,7 +138,21 @@ def pack(record: Record) -> bytes:
 def read(path: Path | str, fields: bool = True) -> Record:
     """A point file, checked against its seal; `fields=False` leaves grid and particles on disk."""
     body, line = unseal(Path(path).read_bytes(), path)
-    return parse(body, line, fields)
+    record = parse(body, line, fields)
+    if record.frames is not None and fields:
+        record.frames = beside(Path(path), record.frames)
+    return record
+
+
+def beside(path: Path, size: int) -> Entries:
+    """The frames of a point's file; DamagedFile where they are not as long as they were."""
+    file = path.with_suffix(".frames")
+    try:
+        if file.stat().st_size == size:
+            return Entries(file)
+    except FileNotFoundError:
+        pass  # told with the same words
+    raise DamagedFile(f"{file}: missing, or not as long as it was written")
 
 
 def parse(body: bytes, line: dict, fields: bool = True) -> Record:
@@ -150,6 +170,7 @@ def parse(body: bytes, line: dict, fields: bool = True) -> Record:
             record.finals = dict(zip(names["finals"], file["finals"][()].tolist(), strict=True))
         if "snapshot" in file:
             record.snapshot_times = file["snapshot"][()]
+        record.frames = int(file.attrs["frames"]) if "frames" in file.attrs else None
         if fields:
             record.axes = {name: values[()] for name, values in file["axes"].items()} if "axes" in file else {}
             record.grid = {name: values[()] for name, values in file["grid"].items()} if "grid" in file else {}

@@ -287,6 +287,6 @@ def watch(experiment, exact=None) -> Watch:
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
         snapshots=output_times(experiment, snapshots.every) if snapshots else np.zeros(0),
         grid=snapshots.grid if snapshots else (),
-        particles=snapshots.particles if snapshots else (),
+        particles=tuple(dict.fromkeys((*snapshots.particles, "body", "id"))) if snapshots and snapshots.particles else (),
         exact=exact,
     )

@@ -57,5 +57,6 @@ def output_bytes(experiment, particles: int) -> int:
     if snapshots is not None:
         frames = ticks(experiment.time.end, snapshots.every)
         nodes = math.prod(round(s / experiment.grid.cell) + 1 for s in experiment.grid.size)
-        size += frames * (4 * nodes * len(snapshots.grid) + 8 * particles * len(snapshots.particles) * 2)
+        numbered = 8 if snapshots.particles else 0  # body and id
+        size += frames * (4 * nodes * len(snapshots.grid) + particles * (16 * len(snapshots.particles) + numbered))
     return size

@@ -12,6 +12,7 @@ kinetic   largest kinetic energy over the work done: kinetic, elastic and dissip
 import numpy as np
 
 from mpm.config import boundary
+from mpm.records.variables import is_total, turn
 from mpm.scene.menus import known
 from mpm.state import Run
 from mpm.warned import warning
@@ -106,13 +107,24 @@ def validity(run: Run, gravity) -> dict[str, float]:
     return found | {"kinetic": float(np.max(kinetic)) / work if work > 0 else 0.0}
 
 
+def shown(experiment):
+    """What turns a snapshot of a scene into that of the experiment: in physical times and velocities, with the mass of whole particles."""
+    S, factor = experiment.time.scale, turn(experiment.grid.dimension)
+
+    def fields(found: dict) -> dict:
+        made = {name: values / S if S != 1 and name.startswith("velocity") else values for name, values in found.items()}
+        return {name: values * factor if factor != 1 and is_total(name) else values for name, values in made.items()}
+
+    return lambda when, grid, particles: (when * S, fields(grid), fields(particles))
+
+
 def physical(run: Run, experiment) -> Run:
     """The run in physical times and velocities, with the measure of what the scaling did; as it is where `time.scale` is 1."""
     S = experiment.time.scale
     if S == 1:
         return run
     found = validity(run, experiment.gravity)
-    run.times, run.snapshot_times = run.times * S, run.snapshot_times * S
+    run.times = run.times * S
     kinetic = run.series["energy_kinetic"]
     run.series["energy_total"] = run.series["energy_total"] - kinetic + kinetic / S**2
     run.series["energy_kinetic"] = kinetic / S**2
@@ -122,10 +134,6 @@ def physical(run: Run, experiment) -> Run:
     run.finals |= {name: float(values[-1]) for name, values in run.series.items()}
     run.finals |= {name: value * S for name, value in run.finals.items() if name.startswith("time_to_")}
     run.finals |= {f"scaling_{name}": value for name, value in found.items()}
-    for fields in (run.grid, *run.particles):
-        for name in fields:
-            if name.startswith("velocity"):
-                fields[name] = fields[name] / S
     past = [f"{what} {found[key]:.2g} above {most:g}" for key, what, most in (("froude", "Froude number", FROUDE), ("kinetic", "kinetic share", KINETIC))
             if found.get(key, 0.0) > most]  # fmt: skip
     run.facts["time_scaling"] = {"scale": S, **found, "valid": not past}

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.checkpoint import EVERY, Checkpoint
-from mpm.records.netcdf import DamagedFile, seal, summary, write_whole
+from mpm.records.netcdf import DamagedFile, summary
 from mpm.records.provenance import versions
 from mpm.records.variables import PENDING, STATUS
 from mpm.sweep import engine
@@ -93,7 +93,7 @@ def whole(store: Store) -> bool:
 def write(store: Store, experiment: Any, case: Any, record: Any, smoke: bool) -> Path:
     """OUT/run.nc of a record, unless it holds just this already."""
     from mpm.sweep.cases import plan as plan_of
-    from mpm.sweep.collect import dataset
+    from mpm.sweep.collect import dataset, put
 
     path, about = store.out / "run.nc", about_one(experiment, case, record, smoke)
     digest = hashlib.sha256(json.dumps([about, record.line], sort_keys=True).encode()).hexdigest()
@@ -102,7 +102,7 @@ def write(store: Store, experiment: Any, case: Any, record: Any, smoke: bool) ->
     except DamagedFile:
         old = None
     if old is None or old.get("digest") != digest:
-        write_whole(path, seal(dataset(plan_of(case.experiment), about, {case.run_id: record}), record.line | {"digest": digest}))
+        put(path, *dataset(plan_of(case.experiment), about, {case.run_id: record}), record.line | {"digest": digest})
     return path
 
 

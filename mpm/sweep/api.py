@@ -191,6 +191,7 @@ def collect_folder(out: Path, target: Path | None = None) -> tuple[Path, bool, d
 
 def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000, threads: int = 1) -> tuple[bytes, Any]:
     """The first point of an experiment in this process, kept nowhere: the bytes of its dataset, and its record. `threads` share one large run."""
+    from mpm.records.netcdf import to_bytes
     from mpm.sweep.alone import about_one
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
@@ -199,7 +200,7 @@ def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None,
     case = plan_of(experiment, max_runs=max_runs).cases[0]
     record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, None, threads, config=case.experiment.resolved())
     alone = plan_of(case.experiment)
-    return dataset(alone, about_one(experiment, case, record), {alone.cases[0].run_id: record}), record
+    return to_bytes(*dataset(alone, about_one(experiment, case, record), {alone.cases[0].run_id: record})), record
 
 
 def tree_of(source: Any) -> Any:

@@ -14,7 +14,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from mpm.records.netcdf import DamagedFile, seal, summary, to_bytes, write_whole
+from mpm.records.large import Parts, write_sealed
+from mpm.records.netcdf import DamagedFile, Group, seal, summary, to_bytes, write_whole
 from mpm.records.provenance import git_revision, machine, versions
 from mpm.sweep import shards, table
 from mpm.sweep.lines import Lines
@@ -28,9 +29,17 @@ def collect(store: Store, plan: Any, about: dict, lines: Lines, target: Path | N
     digest = due(store, about, lines, target)
     if not digest:
         return False
-    data, outside = assemble(store, plan, about, lines, target.parent)
-    write_whole(target, seal(data, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {})))
+    groups, attrs, outside = assemble(store, plan, about, lines, target.parent)
+    put(target, groups, attrs, {"digest": digest, "points": len(plan.cases)} | ({"files": outside} if outside else {}))
     return True
+
+
+def put(target: Path, groups: dict[str, Group], attrs: dict[str, Any], line: dict) -> None:
+    """A sealed dataset on disk, piece by piece where frames lie in files of their own."""
+    if any(isinstance(variable.data, Parts) for group in groups.values() for variable in group.variables.values()):
+        write_sealed(target, groups, attrs, line)
+    else:
+        write_whole(target, seal(to_bytes(groups, attrs), line))
 
 
 def due(store: Store, about: dict, lines: Lines, target: Path | None = None) -> str:
@@ -52,8 +61,8 @@ def fingerprint(about: dict, lines: Lines) -> str:
     return digest.hexdigest()
 
 
-def assemble(store: Store, plan: Any, about: dict, lines: Lines, folder: Path) -> tuple[bytes, list[str]]:
-    """The bytes of a dataset in `folder`, and the files that hold what does not fit into it, which are there when this returns."""
+def assemble(store: Store, plan: Any, about: dict, lines: Lines, folder: Path) -> tuple[dict[str, Group], dict[str, Any], list[str]]:
+    """Groups and attributes of a dataset in `folder`, and the files that hold what does not fit into it, which are there when this returns."""
     order = [run_id for run_id in dict.fromkeys(case.run_id for case in plan.cases) if run_id in lines]
     names = store.places(order)
     fits = store.bytes(order) <= table.LIMIT
@@ -66,10 +75,10 @@ def assemble(store: Store, plan: Any, about: dict, lines: Lines, folder: Path) -
         else:
             laid.add(record)
     outside = shards.write(store, plan, about, laid, folder)
-    return written(laid, about, outside), sorted(set(outside))
+    return *written(laid, about, outside), sorted(set(outside))
 
 
-def dataset(plan: Any, about: dict, records: dict[str, Any]) -> bytes:
+def dataset(plan: Any, about: dict, records: dict[str, Any]) -> tuple[dict[str, Group], dict[str, Any]]:
     """The dataset of a plan from its records by run id, whose files lie where a `Store` puts them."""
     laid = Table(plan, {run_id: f"points/{run_id[:2]}/{run_id}.nc" for run_id in records})
     for record in records.values():
@@ -77,10 +86,10 @@ def dataset(plan: Any, about: dict, records: dict[str, Any]) -> bytes:
     return written(laid, about, [])
 
 
-def written(laid: Table, about: dict, outside: list[str]) -> bytes:
-    """The dataset of a table."""
+def written(laid: Table, about: dict, outside: list[str]) -> tuple[dict[str, Group], dict[str, Any]]:
+    """Groups and attributes of the dataset of a table."""
     groups = {"/": laid.root(about["swept"]), "series": laid.series(outside), "grid": laid.grid(), "particles": laid.particles()}
-    return to_bytes(groups, attributes(about, laid))
+    return groups, attributes(about, laid)
 
 
 def attributes(about: dict, laid: Table) -> dict[str, Any]:

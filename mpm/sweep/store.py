@@ -3,6 +3,7 @@
     OUT/experiment.json      what the folder holds: config, key of the base, swept paths
     OUT/points/ab/<id>.nc    one sealed file a finished point, ok or not (records.point); `.damaged` where the seal did not hold
     OUT/batches/0000/<number>-<pass>.nc   one sealed file for the points of a batch (records.batch), FOLDER numbers a folder
+    OUT/points/ab/<id>.frames   the point's snapshots, where they are large (records.frames)
     OUT/checkpoints/<id>.checkpoint   how far a point is that was stopped or killed (records.checkpoint); gone when it is done
     OUT/sweep.nc             the dataset (collect.py)
     A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
@@ -21,6 +22,7 @@ from typing import Any
 
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
 from mpm.records.provenance import versions
+from mpm.records.variables import TIMEOUT
 from mpm.sweep.about import read_about, write_about
 from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Refused
@@ -56,7 +58,7 @@ class Store:
 
     def forget(self, run_ids: Iterable[str]) -> None:
         """Drop checkpoints, so that these points run from their start."""
-        for path in {path for path in (self.out / "checkpoints").glob("*.checkpoint") if path.stem in set(run_ids)}:
+        for path in {path for path in (self.out / "checkpoints").glob("*.*") if path.stem in set(run_ids)}:
             path.unlink(missing_ok=True)
 
     def tidy(self) -> int:
@@ -86,6 +88,11 @@ class Store:
         """Put a point on disk, durably; when this returns the point counts."""
         from mpm.records.point import pack
 
+        frames = self.path(record.run_id).with_suffix(".frames")
+        if record.frames is not None:
+            record.frames.settle(frames, copy=record.status == TIMEOUT)  # it may go on from its checkpoint
+        elif frames.exists():
+            frames.unlink()
         self.put(self.path(record.run_id), pack(record))
 
     def save_batch(self, records: list[Any], name: str) -> None:
@@ -96,9 +103,8 @@ class Store:
         if together:
             self.put(self.path(name), pack_batch(together))
         kept = {record.run_id for record in together}
-        for record in records:
-            if record.run_id not in kept:
-                self.save(record)
+        for record in (record for record in records if record.run_id not in kept):
+            self.save(record)
 
     def put(self, path: Path, data: bytes) -> None:
         """A file, whole and durable, in a folder that may be new."""
@@ -160,7 +166,8 @@ class Store:
 
     def bytes(self, run_ids: Iterable[str]) -> int:
         """Size of all files that hold these points."""
-        return sum(self.path(name).stat().st_size for name in set(self.places(list(run_ids)).values()))
+        files = [self.path(name) for name in set(self.places(list(run_ids)).values())]
+        return sum(file.stat().st_size for path in files for file in (path, path.with_suffix(".frames")) if file == path or file.exists())
 
     def batch_names(self) -> Iterator[str]:
         """Names for the batches of one pass, after all that are there. A worker that outlives its engine may still write one: its name is no one else's."""

@@ -3,10 +3,13 @@ memory than they take; series of more than SERIES bytes are left to `shards`.
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from mpm.records.frames import Frame
+from mpm.records.large import Parts
 from mpm.records.netcdf import Array, Group
 from mpm.records.point import Record
 from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, components, describe
@@ -54,7 +57,7 @@ class Table:
         self.series_over, self.fields = Over(self.count), Over(self.count)
         self.axes: dict[str, np.ndarray] | None = None
         self.apart = False  # whether the points' grids differ
-        self.rows: list[tuple[int, Record]] = []  # records that have particles, without anything else
+        self.rows: list[tuple[int, np.ndarray, Any]] = []  # place, times and frames of records that have particles
         self.sources: set[str] = set()
         self.started, self.finished, self.facts = "", "", {}
         for case in plan.cases:
@@ -91,8 +94,9 @@ class Table:
         for name in TEXTS:
             self.text[name][place] = getattr(record, name)
         self.text["warnings"][place], self.flags[place] = "\n".join(record.warnings), flags(record.warnings)
-        if self.outside or record.grid:
-            self.text["file"][place] = self.files.get(record.run_id, "")
+        if self.outside or record.grid or record.frames is not None:
+            file = self.files.get(record.run_id, "")
+            self.text["file"][place] = file if record.frames is None else file.removesuffix(".nc") + ".frames"
         if ok:
             self.numbers["steps"][place], self.numbers["wall_time"][place] = record.steps, record.wall_time
             for name, value in record.finals.items():
@@ -103,15 +107,18 @@ class Table:
         if self.series_over.keep and self.count * len(record.times) * 8 * len(record.series) > SERIES:
             self.series_over.drop()
         self.series_over.add(place, record.times, record.series, ok)
-        if record.grid:
+        grid, frames = record.grid, record.frames.opened() if isinstance(record.frames, Sequence) else None
+        if frames is not None and record.axes:
+            shots = [frame.grid for frame in frames]
+            grid = {name: np.stack([shot[name] for shot in shots]) for name in shots[0]}
+        if grid:
             self.axes = record.axes if self.axes is None else self.axes
             self.apart = self.apart or not same(self.axes, record.axes)
             if self.apart:
                 self.fields.drop()
-        self.fields.add(place, record.snapshot_times, record.grid, ok)
-        if len(record.row_size):
-            kept = Record(record.run_id, record.status, snapshot_times=record.snapshot_times, particles=record.particles, row_size=record.row_size)
-            self.rows.append((place, kept))
+        self.fields.add(place, record.snapshot_times, grid, ok)
+        if len(record.row_size) or frames is not None:
+            self.rows.append((place, record.snapshot_times, Rows(record) if frames is None else frames))
 
     def full(self, values: np.ndarray) -> np.ndarray:
         """(count, ...) over the swept dimensions."""
@@ -183,21 +190,23 @@ class Table:
             return group
         time = self.fields.axis()
         sizes, starts = np.zeros((self.count, len(time)), np.int64), np.zeros((self.count, len(time)), np.int64)
-        rows: dict[str, list[np.ndarray]] = {name: [] for _, record in self.rows for name in record.particles}
-        count = 0
-        for place, record in self.rows:
-            begins = np.cumsum(record.row_size) - record.row_size
-            for sample, onto in zip(*places(record.snapshot_times, time), strict=True):
-                begin, size = begins[sample], record.row_size[sample]
+        first: dict[str, np.ndarray] = {}
+        taken, count = [], 0
+        for place, times, frames in self.rows:
+            for sample, onto in zip(*places(times, time), strict=True):
+                fields = frames[sample].particles
+                first = first or fields
+                size = len(next(iter(fields.values()), ()))
                 sizes[place, onto], starts[place, onto] = size, count
                 count += size
-                for name, parts in rows.items():
-                    parts.append(record.particles[name][begin : begin + size])
+                taken.append((frames, sample))
         group.variables["snapshot"] = described("snapshot", ("snapshot",), time)
         group.variables["row_size"] = described("row_size", (*self.dims, "snapshot"), self.full(sizes), sample_dimension="obs")
         group.variables["row_start"] = described("row_start", (*self.dims, "snapshot"), self.full(starts))
-        for name, parts in rows.items():
-            values = np.concatenate(parts)
+        whole = all(isinstance(frames, Rows) for _, _, frames in self.rows)
+        for name, like in first.items():
+            parts = lambda name=name: (frames.part(sample, name) for frames, sample in taken)  # noqa: E731
+            values = np.concatenate(list(parts())) if whole else Parts((count, *like.shape[1:]), like.dtype, parts)
             columns = components(name, self.dimension)
             kind, more = ("entry" if name == "velocity_gradient" else "component", {"components": columns}) if columns else ("direction", {})
             group.variables[name] = described(name, ("obs", kind)[: values.ndim], values, self.dimension, **more)
@@ -207,6 +216,23 @@ class Table:
         """Where the fields of each point lie, as they do not fit into one array or one file."""
         about = {"units": "1", "long_name": "point file that holds the fields, beside this one"}
         return with_axes(Group({"file": Array(self.dims, self.full(self.text["file"]), about)}), planned(self.plan))
+
+
+class Rows(Sequence):
+    """Snapshots of a record that holds them one after another."""
+
+    def __init__(self, record: Record):
+        self.times, self.particles, self.ends = record.snapshot_times, record.particles, np.cumsum(record.row_size)
+        self.sizes = record.row_size
+
+    def __len__(self) -> int:
+        return len(self.ends)
+
+    def __getitem__(self, k: int) -> Frame:
+        return Frame(float(self.times[k]), {}, {name: self.part(k, name) for name in self.particles})
+
+    def part(self, k: int, name: str) -> np.ndarray:
+        return self.particles[name][self.ends[k] - self.sizes[k] : self.ends[k]]
 
 
 def with_axes(group: Group, coordinates: dict[str, Array], more: dict[str, Array] | None = None) -> Group:

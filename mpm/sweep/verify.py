@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.records.frames import Entries
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
 from mpm.sweep.api import collect_last, folder_plan, run_engine, signals
 from mpm.sweep.engine import Engine, Options
@@ -51,12 +52,15 @@ def files(out: Path) -> Iterator[tuple[str, Path]]:
     yield from (("dataset", path) for path in (out / "sweep.nc", out / "run.nc") if path.exists())
     yield from (("series", path) for path in sorted((out / "series").glob("*.nc")))
     yield from (("point", path) for path in sorted((out / "points").glob("*/*.nc")))
+    yield from (("frames", path) for path in sorted((out / "points").glob("*/*.frames")))
     yield from (("batch", path) for path in sorted((out / "batches").glob("*/*.nc")))
     yield from (("checkpoint", path) for path in sorted([*(out / "checkpoints").glob("*.checkpoint"), *out.glob("run.checkpoint")]))
 
 
 def wrong(kind: str, path: Path) -> tuple[int, str]:
     """(bytes, what is wrong with a file; nothing where it is as it was written and lies where it belongs)."""
+    if kind == "frames":
+        return path.stat().st_size, frames_wrong(path)
     data = path.read_bytes()
     try:
         if kind == "experiment":
@@ -68,6 +72,17 @@ def wrong(kind: str, path: Path) -> tuple[int, str]:
     if kind == "point" and line.get("run_id") != path.stem:
         return len(data), f"it holds the point {line.get('run_id')}"
     return len(data), ""
+
+
+def frames_wrong(path: Path) -> str:
+    """What is wrong with a file of frames, which are looked at one by one."""
+    try:
+        frames = Entries(path)
+        for k in range(len(frames)):
+            frames[k]
+    except DamagedFile:
+        return "its contents do not match their checksums"
+    return ""
 
 
 def verify(out: Path, options: Options | None = None, reporter: Reporter | None = None, check: bool = False) -> Found:
@@ -107,6 +122,10 @@ def repair(out: Path, found: Found, options: Options, reporter: Reporter) -> Non
     run_lost = any(one["file"] == "run.nc" for one in found.damaged)
     run_alone = (out / "run.nc").exists() and not any(one["file"] == "sweep.nc" for one in found.damaged)
     store, plan, points, *_ = folder_plan(out)
+    for one in [one for one in found.damaged if one["what"] == "frames"]:  # without them the point's own file is not whole either
+        point = Path(one["file"]).with_suffix(".nc")
+        if (out / point).exists() and not any(other["file"] == str(point) for other in found.damaged):
+            found.damaged.append({"file": str(point), "what": "point", "why": "its frames are damaged", "aside": ""})
     names = [Path(one["file"]).stem if one["what"] == "point" else BATCH + Path(one["file"]).stem for one in found.damaged if one["what"] in ("point", "batch")]
     there = store.places(list(points.ids))
     held = {run_id for run_id, name in there.items() if name in set(names)}

@@ -39,8 +39,8 @@ def perform(
     keeper = None
     if task.checkpoint > 0 and len(task.jobs) == 1:
         keeper = Checkpoint(Store(task.out).checkpoint(task.id), task.id, task.checkpoint, note)
-    records, left = results(task, runner, stopped, keeper)
     try:
+        records, left = results(task, runner, stopped, keeper)
         (store or Store(task.out)).save_batch(records, task.batch)
     except OSError as error:
         return {"is": "unwritten", "task": task.id, "why": f"{error.filename}: {error.strerror}"}
@@ -97,6 +97,7 @@ def compute(
 ) -> Any:
     """The record of a point. Whatever the model raises is this point's failure, not the sweep's: status `failed`, with the place but no values."""
     from mpm.records import point, variables
+    from mpm.records.frames import Unwritten
     from mpm.records.provenance import now, source_hash
 
     calls |= {"source": source_hash(), "started": now()}
@@ -107,6 +108,8 @@ def compute(
     except MemoryError:
         text = f"{variables.STATUS[variables.KILLED]}: wants more memory than is allowed or free"
         return point.Record(run_id, variables.KILLED, text, variables.MEMORY, wall_time=time.perf_counter() - began, finished=now(), **calls)
+    except Unwritten:
+        raise
     except Exception as error:
         text = f"{variables.STATUS[variables.FAILED]}: {told(error)}"
         return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)

@@ -4,6 +4,7 @@ import xarray as xr
 
 from mpm.config import load
 from mpm.outcome import INVERTED, outcome
+from mpm.records.netcdf import to_bytes
 from mpm.records.point import Record
 from mpm.sweep import shards, table
 from mpm.sweep.api import collect_folder, execute, run_one, tree_of
@@ -58,7 +59,7 @@ def test_grids_that_differ_and_fields_that_are_too_large_stay_in_the_points(conf
         for case, grid in zip(cases.cases, grids, strict=True)
     }
     about = {"title": "", "name": "a", "source": "", "smoke": False, "swept": [], "resolved": {}}
-    tree = tree_of(dataset(cases, about, records))
+    tree = tree_of(to_bytes(*dataset(cases, about, records)))
     assert tree["grid"].file.values.tolist() == [f"points/{case.run_id[:2]}/{case.run_id}.nc" for case in cases.cases]
     monkeypatch.setattr(table, "LIMIT", 10)
     go(points, tmp_path)
