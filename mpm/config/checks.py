@@ -7,6 +7,7 @@ To add a rule: write it, list it in `RULES` with the items it is for.
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from mpm.config import rules_fit as fitting
 from mpm.config import rules_frame as framing
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
@@ -62,6 +63,7 @@ def each(section: str) -> Callable[[Any], Iterator[tuple]]:
 
 
 RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
+    (fitting.parameters, once),
     (scene.names, once),
     (scene.grid, once),
     (size.count, once),

@@ -1,6 +1,7 @@
 """`where` and `derive`: conditions and formulas over parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
 
-Formulas: + - * / **, numbers, names (short names or dotted paths), pi, and the functions below. Conditions: also comparisons, and or not, text.
+Formulas: + - * / **, numbers, names (short names or dotted paths, entries of lists as `loads[0]`), pi, and the functions below. Conditions: also
+comparisons, and or not, text.
 Every number is a float, so that no power takes long; text is compared and never reckoned with; what is no number (NaN, complex) is an error.
 """
 
@@ -77,8 +78,8 @@ class Formula:
             return self.call(node)
         if isinstance(node, ast.Name) and node.id == "pi":
             return lambda values: math.pi
-        if isinstance(node, ast.Name | ast.Attribute):
-            name = dotted(node)
+        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+            name = dotted(node, self.what)
             self.names[name] = None
             return lambda values: values[name]
         number = self.number
@@ -147,16 +148,19 @@ def levels(tree: ast.AST) -> int:
     while left:
         node, depth = left.pop()
         deepest = max(deepest, depth)
-        left += [(child, depth + 1) for child in ast.iter_child_nodes(node) if not isinstance(node, ast.Attribute)]
+        left += [(child, depth + 1) for child in ast.iter_child_nodes(node) if not isinstance(node, ast.Attribute | ast.Subscript)]
     return deepest
 
 
-def dotted(node: ast.AST) -> str:
-    """`materials.dough.heat.fourier.kappa` from nested attributes."""
-    parts = []
-    while isinstance(node, ast.Attribute):
-        parts.append(node.attr)
+def dotted(node: ast.AST, what: str = "condition") -> str:
+    """`materials.dough.heat.fourier.kappa` from nested attributes, `loads[0].value` as `loads.0.value`."""
+    parts: list[str] = []
+    whole = node
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        if isinstance(node, ast.Subscript) and not (isinstance(node.slice, ast.Constant) and type(node.slice.value) is int):
+            break
+        parts.append(node.attr if isinstance(node, ast.Attribute) else str(node.slice.value))
         node = node.value
     if not isinstance(node, ast.Name):
-        raise ConditionError(f"a condition may not hold {ast.unparse(node)[:60]!r}")
+        raise ConditionError(f"a {what} may not hold {ast.unparse(whole)[:60]!r}")
     return ".".join([node.id, *reversed(parts)])

@@ -20,13 +20,14 @@ from mpm.config.materials import Material
 from mpm.config.model import Which
 from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
+from mpm.config.parameters import Named
 from mpm.config.quantities import Acceleration
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
 from mpm.text import storable
 
 PHYSICS_VERSION = 2
-NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability")  # cannot change the result of a point
+NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability", "parameters", "formulas", "fit")  # cannot change the result of a point
 
 
 class Experiment(Model):
@@ -50,7 +51,10 @@ class Experiment(Model):
     sweep: Sweep | None = doc(None, description="what varies")
     chart: Chart | None = doc(None, description="speed against accuracy: methods and resolutions of `mpm chart`")
     stability: Stability | None = doc(None, description="a map of failures, for mpm stability")
+    parameters: dict[str, Named] = doc({}, description="numbers by name, used as `=name` or in formulas wherever a number stands, swept and fitted by name")
     smoke: dict[str, Any] | None = doc(None, description="path: value, applied by --smoke to make the run coarse and short")
+
+    formulas: dict[str, str] = doc({}, description="path: formula over parameters; filled in when the config is read")
 
     _source: str = PrivateAttr("")
     _path: Path | None = PrivateAttr(None)

@@ -14,6 +14,7 @@ from mpm.config.measured import embed
 from mpm.config.merge import extend, put
 from mpm.config.names import GREEK, ROOT, Names, UnknownName
 from mpm.config.nodes import BAD, Node, Origin, lines, read, read_file, wrap
+from mpm.config.parameters import Binder, named
 from mpm.config.problems import ConfigError, Problem, brief, listed
 from mpm.config.rules_stability import findings as map_findings
 from mpm.config.slots import Path
@@ -34,6 +35,7 @@ def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None =
     if root is None:
         raise ConfigError(found)
     given = settings(overrides or {}, found)
+    named(root)
     wanted = smoke_settings(root)
     full = copy(root)
     if smoke and not wanted:
@@ -124,7 +126,7 @@ def apply(root: Node, wanted: list[Setting], found: list[Problem]) -> None:
         return
     names = None
     for name, node, placed in wanted:
-        names = names or Names(loose(ROOT, root.plain()))
+        names = names or Names(loose(ROOT, Binder(root, ROOT).bind().plain()))
         try:
             path = names.target(name)
         except UnknownName as error:
@@ -135,9 +137,19 @@ def apply(root: Node, wanted: list[Setting], found: list[Problem]) -> None:
         except Unknown:
             continue
         put(root, path, node, ROOT)
+        unfollow(root, path)
         if path[0] != "sweep" and "sweep" in root.value:
             fix(root, path, names)
         names = None  # what is set may make room for what comes next
+
+
+def unfollow(root: Node, path: Path) -> None:
+    """What is set follows from no formula any more."""
+    section = root.value.get("formulas")
+    if section is not None and isinstance(section.value, dict):
+        said = ".".join(map(str, path))
+        gone = [one for one in section.value if one == said or one.startswith(said + ".") or said.startswith(one + ".")]
+        root.value["formulas"] = Node({one: node for one, node in section.value.items() if one not in gone}, section.origin)
 
 
 def fix(root: Node, path: Path, names: Names) -> None:
@@ -191,7 +203,11 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
 
     orphan   its base file cannot be read: what is missing may be there, so only what is wrong in itself is told
     """
-    raw = root.plain()
+    binder = Binder(root, ROOT)
+    bound = binder.bind()
+    raw = bound.plain()
+    told = problems(root, binder.found)
+    root = bound
     found: list[Finding] = []
     experiment: Any = None
     try:
@@ -200,7 +216,7 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
         found += findings(error, ROOT)
         whole = loose(ROOT, raw)
     if orphan:
-        return None, problems(root, [finding for finding in found if not finding.missing])
+        return None, told + problems(root, [finding for finding in found if not finding.missing])
     found += check(whole)
     sweep = whole.sweep
     if sweep is not None and sweep is not MISSING:
@@ -211,7 +227,7 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
             pass  # part of the sweep is wrong and told above
         found += vary.found
     found += map_findings(whole)
-    return experiment, problems(root, found)
+    return experiment, told + problems(root, found)
 
 
 __all__ = ["GREEK", "load", "restore", "shown"]

@@ -6,11 +6,12 @@ from typing import Any
 from mpm.config.base import Kind, Model
 from mpm.config.experiment import Experiment
 from mpm.config.laws import Constant
+from mpm.config.parameters import slot_of
 from mpm.config.problems import near
 from mpm.config.slots import Path, Slot, leaves, places
 
 GREEK = {"κ": "kappa", "β": "beta", "α": "alpha", "η": "eta"}
-NOT_VARIED = ("title", "sweep", "smoke", "chart", "stability")
+NOT_VARIED = ("title", "sweep", "smoke", "chart", "stability", "fit", "formulas")
 ROOT = Slot(Experiment)
 
 
@@ -31,9 +32,14 @@ class Names:
         self.spoken: dict[Path, str] = {}
         self.tails: dict[tuple[str, ...], dict[Path, None]] = defaultdict(dict)
         surfaces = experiment.surfaces if isinstance(experiment.surfaces, tuple) else ()
+        declared = experiment.parameters if isinstance(experiment.parameters, dict) else {}
+        self.declared: dict[str, Path] = {name: ("parameters", name, "value") for name in declared}
+        for name, path in self.declared.items():
+            self.slots[path], self.spoken[path] = slot_of(name, declared[name]), f"parameters.{name}"
+            self.tails[(name,)][path] = self.tails[("parameters", name)][path] = None
         called = {index: surface.name for index, surface in enumerate(surfaces) if isinstance(surface, Model) and isinstance(surface.name, str)}
         for path, slot in leaves(ROOT, experiment):
-            if path[0] in NOT_VARIED:
+            if path[0] in (*NOT_VARIED, "parameters"):
                 continue
             self.slots[path] = slot
             forms = [tuple(map(str, path))]
@@ -47,6 +53,8 @@ class Names:
     def resolve(self, name: str) -> tuple[Path, Slot]:
         """The path and slot that a name stands for; UnknownName lists what would do."""
         parts = tuple(GREEK.get(part, part) for part in name.split("."))
+        if parts[-1] in self.declared and parts in ((parts[-1],), ("parameters", parts[-1])):  # what the file declares comes first
+            return (path := self.declared[parts[-1]]), self.slots[path]
         found = list(self.tails.get(parts, ()))
         whole = [path for path in found if self.spoken[path] == ".".join(parts) or tuple(map(str, path)) == parts]
         if whole:

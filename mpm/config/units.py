@@ -48,6 +48,38 @@ def article(noun: str) -> str:
     return "an" if noun[:1] in "aeiou" else "a"
 
 
+SI = ("m", "s", "K", "kg", "Pa", "W/m/K", "W/m**2/K", "J/kg/K", "kg/m**3", "Pa*s", "J/kg", "J", "W", "N", "W/m**2", "W/m**3", "m/s", "m/s**2", "1/s", "1/K",
+      "Pa/K", "m**2", "m**3", "m**2/s", "rad")  # fmt: skip
+
+
+@functools.lru_cache(4096)
+def si(text: str) -> str:
+    """The SI unit, as configs write it, of the same dimension as the unit in a text; UnitError where it has none that is known."""
+    wrong = UnitError("")
+    for unit in SI:
+        try:
+            convert(text, unit, "parameter")
+        except UnitError as error:
+            wrong = error
+        else:
+            return unit
+    units, found = registry(), TEXT.fullmatch(text)
+    try:
+        given = units.parse_units(PLAIN_POWER.sub(r"**\1", found[2].translate(ALIKE))) if found and UNIT.fullmatch(found[2]) else None
+    except Exception:  # as in `convert`
+        given = None
+    if given is None or given.dimensionless:
+        raise wrong
+    return f"{units.Quantity(1, given).to_base_units().units:~}".replace(" ", "")
+
+
+def alike(one: str, two: str) -> bool:
+    """Whether two SI units have one dimension."""
+    units = registry()
+    parse = lambda unit: units.parse_units(PLAIN_POWER.sub(r"**\1", unit) if unit not in ("", "1") else "dimensionless")  # noqa: E731
+    return parse(one).dimensionality == parse(two).dimensionality
+
+
 @functools.lru_cache(4096)
 def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
     """The number in `text` converted to `unit`; `difference` reads degC and degF as differences."""
@@ -71,7 +103,7 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
         raise UnitError(f"unknown unit {found[2]!r}", suggestion=slip or (f'"{found[1]} {near[0]}"' if near else "")) from None
     if difference and str(source) in OFFSET:
         source = units.parse_units(OFFSET[str(source)])
-    target = units.parse_units(unit or "dimensionless")
+    target = units.parse_units(PLAIN_POWER.sub(r"**\1", unit) if unit not in ("", "1") else "dimensionless")
     if source.dimensionality != target.dimensionality:
         said = NAMES.get(str(source.dimensionality), "")
         said = f"is {article(said)} {said}" if said else f"has the dimension {source.dimensionality}"

@@ -80,6 +80,8 @@ def label(value: Any) -> str:
     """A short text for a value that is no number: the kind `{flip: {blend: 0.1}}` as `flip(blend=0.1)`, entries as `xx=0, yy=0`; what is absent is left out."""
     if isinstance(value, dict):
         return ", ".join(entry(key, inner) for key, inner in value.items() if inner is not None) or "none"
+    if isinstance(value, list | tuple) and len(value) == 1 and isinstance(value[0], float | int):
+        return label(value[0])  # a place in 1-D is a number
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(label, value)) + "]"
     return exactly(value) if isinstance(value, float) else str(value)

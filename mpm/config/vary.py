@@ -45,7 +45,10 @@ class Vary:
             groups += self.sample(sweep.sample)
         if sweep.points:
             groups += self.points(sweep.points)
-        variation = Variation(groups, [one for name, text in sweep.derive.items() if (one := self.derive(name, text))])
+        variation = Variation(groups)
+        variation.derived += self.follow(variation)
+        variation.derived += [one for name, text in sweep.derive.items() if (one := self.derive(name, text))]
+        variation.derived += self.follow(variation)
         self.conflicts(variation)
         self.shorten(variation)
         if sweep.where is not None:
@@ -202,6 +205,21 @@ class Vary:
                 if short.isidentifier() and short not in RESERVED and short not in VARIABLES and short not in results and short not in others:
                     break
             parameter.short = short
+
+    def follow(self, variation: Variation) -> list[Derived]:
+        """What the config says by formulas over named parameters of which one varies."""
+        varied = {parameter.path for parameter in variation.parameters()}
+        found: list[Derived] = []
+        for spoken, text in self.names.experiment.formulas.items():
+            path, slot = self.names.resolve(spoken.removesuffix(".value") if spoken.startswith("parameters.") else spoken)
+            formula = Formula(text)
+            names = {name: self.names.declared[name] for name in formula.names}
+            known = any(one.parameter.path == path for one in variation.derived)
+            if not known and varied.intersection(names.values()):
+                parameter = Parameter(spoken, path, slot, path, spoken=self.names.spoken.get(path) or shown(path))
+                found.append(Derived(parameter, formula, names))
+                varied.add(path)
+        return found
 
     def derive(self, name: str, text: str) -> Derived | None:
         """A parameter by its formula."""

@@ -121,7 +121,8 @@ class Points:
         varied = {parameter.path: value for parameter, value in pairs}
         found = {}
         for name, path in names.items():
-            value = varied[path] if path in varied else at_path(self.base, path)
+            above = next((path[:length] for length in range(len(path), 0, -1) if path[:length] in varied), ())  # a list varies with its entries
+            value = at_path(varied[above], path[len(above) :]) if above else at_path(self.base, path)
             found[name] = float(value) if isinstance(value, float | int) else math.inf if value == ".inf" else label(value)
         return found
 
@@ -180,7 +181,8 @@ class Points:
         """The dimensions and values of what follows by a formula: over the groups that it depends on."""
         depends: dict[Path, set[int]] = {parameter.path: {k} for k, group in enumerate(self.groups) for parameter in group}
         for at, one in enumerate(self.variation.derived):
-            here = sorted(set().union(*(depends.get(path, set()) for path in one.names.values())))
+            above = {path[:length] for path in one.names.values() for length in range(1, len(path) + 1)}
+            here = sorted(set().union(*(depends.get(path, set()) for path in above)))
             depends[one.parameter.path] = set(here)
             shape = tuple(self.shape[k] for k in here)
             values = np.empty(shape)
@@ -217,8 +219,9 @@ class Points:
     def coordinate(self, parameter: Parameter) -> Coordinate:
         """Values along the dimension: floats where all are numbers, else labels."""
         raw = [float("inf") if value == ".inf" else value for value in self.columns[id(parameter)]]
+        raw, alone = ([value[0] for value in raw], True) if all(isinstance(value, list) and len(value) == 1 for value in raw) else (raw, False)
         numbers = all(isinstance(value, float | int) and not isinstance(value, bool) for value in raw)
-        quantity = parameter.slot.quantity
+        quantity = parameter.slot.step(0).quantity if alone else parameter.slot.quantity  # a place in 1-D is a number
         values = np.array(raw, dtype=float) if numbers else np.array(labels(raw), dtype=object)
         units = quantity.units if quantity and numbers else "1" if numbers else ""
         return Coordinate(parameter.short, values, units, parameter.slot.description or parameter.short, parameter.spoken)

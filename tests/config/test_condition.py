@@ -42,7 +42,7 @@ def test_names():
         "-kappa",
         "kappa > > 1",
         "",
-        "kappa[0] > 1",
+        "kappa[a] > 1",
         "kappa := 3",
         "kappa in beta",
         "kappa is 3",
