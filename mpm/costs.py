@@ -58,14 +58,17 @@ def held_bytes(experiment, particles: int) -> int:
 
 
 def bytes_particle(experiment) -> int:
-    """At the peak of a run, which is where motion is summed up (mpm.observe): the state, and in double precision x, v, m, J, V0, squares of v and C."""
+    """At the peak of a run, which is where motion is summed up (mpm.observe): the state, and in double precision x, v, m, J, V0, squares of v and C.
+
+    And v and C as the run goes on from them (mpm.contact.insync).
+    """
     D, real = experiment.grid.directions, 4 if experiment.method.precision == "float32" else 8
     state = real * (2 * D + D * D + COMPONENTS[D] + 3)  # x, v, C, B, J, m, V0
     if any(material.heat is not None for material in experiment.materials.values()):
         state += real * (1 + D) + 8  # theta and its gradient; theta at the start
     if experiment.loads:
         state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
-    return state + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
+    return state + real * (D + D * D) + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
 
 
 def bytes_node(experiment) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mpm.contact.block import advance_block, work_arrays
+from mpm.contact.insync import in_sync
 from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
 from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
@@ -93,6 +94,7 @@ class Clock:
         self.bound: dict[str, int] = {}
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
         self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
+        self.lag, self.touching = 0.0, False  # how far velocities lie behind positions [s] (contact/insync.py); whether the last block looked for contacts
         self.seen = np.tile([math.inf, -math.inf], (len(scene.bodies), 1))  # lowest and highest temperature of body and surroundings so far
         self.stepped = self.heated = None  # (step, its limit [s], the limit's name) of the last mechanical step and of the last heat sub-step
         self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output or snapshot, start of its interval, heat step, heat steps (0: none yet)
@@ -157,8 +159,9 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         if not result.ok:
             break
         show_all(scene)
-        (recorder.record if told else recorder.frame)(scene, clock)
-        result = guards.frame(scene, clock, recorder.series) if told else result
+        with in_sync(scene, clock, buffers):
+            (recorder.record if told else recorder.frame)(scene, clock)
+            result = guards.frame(scene, clock, recorder.series) if told else result
         if not result.ok:
             recorder.drop()
             break

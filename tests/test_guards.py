@@ -8,7 +8,7 @@ import pytest
 
 import mpm
 import mpm.simulation as simulation
-from mpm.guards import GROWTH, NOISE, ROUNDING, SLOPES, Data, Guards, stagger
+from mpm.guards import GROWTH, NOISE, ROUNDING, SLOPES, Data, Guards
 
 DT = 0.01
 FIELDS = {"temperature": "theta", "gradient of temperature": "c", "J": "J", "strain": "B", "affine velocity": "C", "velocity": "v", "position": "x"}
@@ -137,22 +137,20 @@ def test_energy_from_nowhere_ends_a_run(core):
         assert 5.0 <= run.times[-1] < 6.0
 
 
-def test_the_stagger_of_a_step_is_not_taken_for_growth(core, monkeypatch):
-    """A swing at the automatic step seems to gain and lose; less what positions and velocities stand apart by it gains nothing."""
+@pytest.mark.parametrize("transfer", ["apic", "flip"])
+def test_a_swing_gains_nothing(monkeypatch, transfer):
+    """A bar of 8 cells at the automatic step, seen every tenth of a second: velocities and positions of one time. Half a step apart they seem to gain 2.5 %."""
     gains, frame = [], Guards.frame
 
     def watched(self, scene, clock, series):
         found = frame(self, scene, clock, series)
-        if clock.stepped is not None:
-            gained = series["energy_total"][-1] - self.begun
-            gains.append((gained / self.most, (gained - stagger(scene, clock.stepped[0])) / self.most))
+        gains.append((series["energy_total"][-1] - self.begun) / self.most)
         return found
 
     monkeypatch.setattr(Guards, "frame", watched)
     bar = Path(__file__).parents[1] / "configs" / "verification" / "hencky_bar.yaml"
-    assert mpm.run_point(mpm.load(bar, {"grid.cell": 0.125})).outcome.ok
-    raw, less = np.max(gains, axis=0)
-    assert raw > 0.01 and less < 0.001, (raw, less)
+    assert mpm.run_point(mpm.load(bar, {"grid.cell": 0.125, "method.transfer": transfer})).outcome.ok
+    assert max(gains) < 0.002
 
 
 def test_temperatures_may_overshoot_by_what_their_transfer_does(core):

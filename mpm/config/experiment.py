@@ -26,7 +26,7 @@ from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
 from mpm.text import storable
 
-PHYSICS_VERSION = 2
+PHYSICS_VERSION = 3
 NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability", "parameters", "formulas", "fit")  # cannot change the result of a point
 
 

@@ -10,7 +10,7 @@ from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.slabs import advance_slabs
-from mpm.integrate.strain import SPEED
+from mpm.integrate.strain import PARTICLE, SPEED
 from mpm.integrate.timestep import WAVE, limits
 from mpm.lanes import aligned
 from mpm.outcome import COMPLETED, Outcome, outcome
@@ -33,24 +33,31 @@ def work_arrays(scene):
 
 def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     """One block of `steps` steps of dt; clock.reports tells of it. Not ok where a meeting was not foreseen."""
-    nodes, force, (boxes, blocks), _ = buffers
-    speed, g = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity))
-    met = scene.meeting
-    touching = met is not None and met.near(AHEAD * (speed + g * dt * steps) * dt * steps)
-    if touching and met.unforeseen is not None:
+    speed, g, met = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity)), scene.meeting
+    clock.touching = met is not None and met.near(AHEAD * (speed + g * dt * steps) * dt * steps)
+    if clock.touching and met.unforeseen is not None:
         return outcome(met.unforeseen[0], time=clock.time * scene.scale, step=clock.steps, detail=f"({scene.names[met.unforeseen[1]]})")
-    wave = limits(scene.space, directions(scene.space), scene.bodies, clock.reports).mechanical["elastic wave"] if touching else 0.0
     scene.order.refresh()
-    clock.reset()
-    astray, begun, reports = False, clock.steps, clock.reports
-    if touching:
-        met.advance(scene, nodes, force, boxes, blocks, float(dt), steps, begun, WAVE * scene.space.h / wave, reports)
-    elif scene.order.sliced:
-        astray = advance_slabs(scene, nodes, force, boxes, blocks, float(dt), steps, begun, reports)
-    else:
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, scene.walls, scene.gravity, dt, steps, begun, reports)
-    travel = math.sqrt(max(reports[:, SPEED])) * dt * steps
+    kick, clock.lag = clock.lag + 0.5 * dt, 0.5 * dt
+    astray = push(scene, clock, buffers, float(dt), float(kick), steps, float(dt), clock.reports)
+    travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:
         met.left -= travel
     return outcome(COMPLETED)
+
+
+def push(scene, clock, buffers, dt: float, kick: float, steps: int, ahead: float, reports) -> bool:
+    """`steps` steps of dt, whose first impulse acts for `kick` and whose contacts are such that nothing overlaps `ahead` later. Whether a chunk was late."""
+    nodes, force, (boxes, blocks), _ = buffers
+    wave = limits(scene.space, directions(scene.space), scene.bodies, clock.reports).mechanical["elastic wave"] if clock.touching else 0.0
+    reports[:] = 0.0
+    reports[:, PARTICLE] = -1
+    if clock.touching:
+        scene.meeting.advance(scene, nodes, force, boxes, blocks, dt, kick, ahead, steps, clock.steps, WAVE * scene.space.h / wave, reports)
+    elif scene.order.sliced:
+        return advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, clock.steps, reports)
+    else:
+        around = scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports
+        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, *around)
+    return False

@@ -116,14 +116,15 @@ class Meeting:
                         unforeseen = UNPREPARED, b
         return min(found), unforeseen
 
-    def advance(self, scene, nodes, force, boxes, blocks, dt: float, steps: int, begun: int, sound: float, reports) -> None:
+    def advance(self, scene, nodes, force, boxes, blocks, dt: float, kick: float, ahead: float, steps: int, begun: int, sound: float,
+                reports) -> None:  # fmt: skip
         """One block of steps in which something may be near."""
         if len(self.touching.walls) > 1:
             nodes, force, boxes, blocks = self.apart(scene)
         else:
             nodes, force, boxes, blocks = nodes[None], force[None], boxes[None], blocks[None]
-        advance_touching(scene.space, scene.gradient, scene.scheme, scene.bodies, self.touching, nodes, force, boxes, blocks, scene.gravity, dt, steps, begun,
-                         sound, reports)  # fmt: skip
+        advance_touching(scene.space, scene.gradient, scene.scheme, scene.bodies, self.touching, nodes, force, boxes, blocks, scene.gravity, dt, kick,
+                         ahead, steps, begun, sound, reports)  # fmt: skip
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

@@ -41,8 +41,11 @@ class Touching(NamedTuple):
 
 
 @kernel
-def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, boxes, blocks, gravity, dt, steps, begun, sound, reports):
-    """As explicit.advance with nodes and force (F, 2, n, columns), boxes (F, 2, 3, 2), blocks (F, 2, marks); sound: speed of the fastest wave [m/s]."""
+def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, boxes, blocks, gravity, dt, kick, ahead, steps, begun, sound, reports):
+    """As explicit.advance with nodes and force (F, 2, n, columns), boxes (F, 2, 3, 2), blocks (F, 2, marks); sound: speed of the fastest wave [m/s].
+
+    ahead [s]: contacts are such that nothing overlaps by then; dt, but where velocities are only looked at (insync.py).
+    """
     chunk = new_chunk(gravity.shape[0], nodes[0], uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
     change, shape, fields = np.zeros_like(chunk.v), extents(space), len(touching.walls)
     skin = new_skin(gravity.shape[0], touching.first)
@@ -53,18 +56,19 @@ def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, bo
         opening, last, now = step < 0, step == steps - 1, step % 2
         if not opening:
             for f in range(fields):
-                update(space, scheme, nodes[f, now], force[f, now], boxes[f, now], blocks[f, now], touching.walls[f], gravity, dt)
+                acts = kick if step == 0 else dt
+                update(space, scheme, nodes[f, now], force[f, now], boxes[f, now], blocks[f, now], touching.walls[f], gravity, acts)
             here, there, walls = nodes[0], force[0], touching.walls[0]
             if fields == 1:
                 sharpen(scheme, space, gradient, bodies, chunk, here[now], there[now], here[1 - now], there[1 - now], boxes[0, now], blocks[0, now], walls)
-            meet(space, gradient, scheme, bodies, touching, skin, nodes, force, boxes, blocks, now, dt, sound)
+            meet(space, gradient, scheme, bodies, touching, skin, nodes, force, boxes, blocks, now, ahead, sound)
             if fields == 1:
                 average_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt)
                 compress_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt, reports)
-        ok, b = True, 0
+        ok, b, push = True, 0, kick if opening else dt
         for body in literal_unroll(bodies):
             f = touching.fields[b]
-            ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes[f], force[f], boxes[f], blocks[f], True, now, dt, step, begun,
+            ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes[f], force[f], boxes[f], blocks[f], True, now, push, step, begun,
                                   opening, last, reports[b])  # fmt: skip
             b += 1
         if not ok:

@@ -1,4 +1,4 @@
-"""The mechanical step, symplectic Euler, chunk by chunk (docs/physics.md 4).
+"""The mechanical step, chunk by chunk: leapfrog, velocities in the middle of steps, positions at their ends (docs/physics.md 4; contact/insync.py).
 
 open      particles, if they are sound -> nodes
 each step nodes: v = p/m + dt g, walls (XPIC: its extra transfers)
@@ -31,8 +31,8 @@ from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick
 
 
 @kernel
-def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, steps, begun, reports):
-    """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run.
+def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, kick, steps, begun, reports):
+    """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run. kick: how long the impulse of the first acts (contact/insync.py).
 
     nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
     boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py.
@@ -47,8 +47,9 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls,
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
-        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, reports):
+            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick if step == 0 else dt, reports)
+        push = kick if opening else dt
+        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, push, step, begun, opening, last, reports):
             return
         if opening:
             sparse = thin(shape, boxes[1 - now], blocks[1 - now])
@@ -68,11 +69,11 @@ def clean(space, scheme, nodes, force, box, blocks):
 
 
 @kernel
-def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports):
-    """What is done to the nodes of buffer `now` between scatter and gather."""
+def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports):
+    """What is done to the nodes of buffer `now` between scatter and gather; `kick` is the time that the impulse acts."""
     if not sparse:
         mark_box(blocks[now], directions(space), extents(space), boxes[now])
-    update(space, scheme, nodes[now], force[now], boxes[now], blocks[now], walls, gravity, dt)
+    update(space, scheme, nodes[now], force[now], boxes[now], blocks[now], walls, gravity, kick)
     sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], blocks[now], walls)
     average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
     compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)

@@ -122,13 +122,13 @@ def within(space, chunk, axis, count, low, high):
 
 
 @kernel
-def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports):
+def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports):
     """What is done to the nodes between scatter and gather."""
     chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, reports)
+    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports)
 
 
-def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, begun, reports) -> bool:
+def advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
     space, bodies, starts, axis = scene.space, scene.bodies, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
@@ -145,10 +145,10 @@ def advance_slabs(scene, nodes, force, boxes, blocks, dt, steps, begun, reports)
         for step in range(-1, steps):
             opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
             if not opening:
-                around = scene.walls, scene.gravity
-                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, dt, slabs.reports[M])
+                around = scene.walls, scene.gravity, dt, kick if step == 0 else dt
+                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, slabs.reports[M])
             share_out(reach, slabs)
-            moment = Moment(now, dt, step, begun, opening, last, False, sparse)
+            moment = Moment(now, kick if opening else dt, step, begun, opening, last, False, sparse)
             crew.work(order, lambda which, m=moment: pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, which, nodes, force, m))
             empty(extents(space), slabs.boxes[M])
             if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():

@@ -3,7 +3,7 @@
 R0 u'' = dP/dX,  P = (lam + 2 mu) ln F/F,  v(X, 0) = V sin(k X),  u = 0 at X = 0;  upper end at the wall (k = pi/L) or free (k = pi/2 L).
 Solved by one Legendre element of POINTS nodes (the free end is natural) and Runge-Kutta steps of order 8: against the tables of problem 5 to 1e-9.
 Holds until the wave breaks: about 1/(1.5 k V) after the start.
-Order   2 in the cell at a fixed Courant number: the bar starts without acceleration, so half a step of symplectic Euler's lag is none
+Order   2 in the cell at a fixed Courant number; where velocity and stress stall, and why: configs/verification/README.md
 """
 
 import functools
