@@ -158,4 +158,4 @@ def exchanging_area(body) -> float:
         acting |= surface.radiation.emissivity > 0
     owner = surface.owner[acting]
     normal = np.einsum("sji,sj->si", np.linalg.inv(surface.F.astype(float))[surface.row[owner]], surface.area[acting])
-    return float(body.particles.J[owner].astype(float) @ np.linalg.norm(normal, axis=1))
+    return float(np.sum(body.particles.J[owner].astype(float) * np.linalg.norm(normal, axis=1)))  # in no order of BLAS

@@ -68,6 +68,7 @@ def repair(space, particles, thermal, nodes, walls, bound, sign):
     for i in range(N):
         beyond = sign * m[i] * (enthalpy(thermal.alpha, thermal.zero + theta[i]) - at_bound)
         excess[i], room[i] = max(beyond, 0.0), max(-beyond, 0.0)
+    for i in range(N):  # sums apart from stores keep their bits, whichever arrays are neighbours
         whole += excess[i]
         space_left += room[i]
     if space_left < whole:
@@ -95,7 +96,8 @@ def repair(space, particles, thermal, nodes, walls, bound, sign):
         gather_scalar(space, x, first, count, beyond_at, value, slope, grad)
         for p in range(count):
             taken[first + p] = room[first + p] * min(value[p], 1.0)
-            given += taken[first + p]
+    for i in range(N):
+        given += taken[i]
     share = max(0.0, whole - given) / (space_left - given) if space_left > given else 0.0
     for i in range(N):
         if excess[i] > 0.0:

@@ -41,6 +41,7 @@ def miss(space, x, flow, pieces, met, walls, shape, box, each, base, change, hel
     size = 0.0
     for k in range(len(each)):
         out[k] = held[k] - total[k] - rate[each[k]]
+    for k in range(len(each)):  # a sum apart from stores keeps its bits, whichever arrays are neighbours
         size += out[k] * out[k] / weight[k]
     wipe(rate, shape, box)
     return size

@@ -10,6 +10,7 @@ Fails when   a flux is given: there is no bound on its side;   beta h/kappa is l
 import numpy as np
 
 from mpm.rigid.newton import NewtonSteps
+from mpm.rigid.ordered import dot
 from mpm.rigid.tables import enthalpies, temperatures
 
 TIGHT = 1e-10  # of the span: residual of Newton, for what it leaves is not between bounds
@@ -38,7 +39,7 @@ class BoundedSteps(NewtonSteps):
         error = super().attempt(dt)
         if not np.isfinite(error):
             return error
-        new, taken, self.by_euler = self.reached, dt * float(self.tableau.a[-1] @ self.taken), False
+        new, taken, self.by_euler = self.reached, dt * dot(self.tableau.a[-1], self.taken), False
         if self.beyond(new) > CLEAN * self.system.span:
             found = self.stage(self.state, dt, self.around(self.now + dt), new, np.empty(len(self.state)))
             if found is None or self.beyond(found[0]) > CLEAN * self.system.span:
@@ -55,10 +56,10 @@ class BoundedSteps(NewtonSteps):
         """
         low, high = self.ends
         kept = np.where(self.weight > 0, np.clip(state, low, high), state)
-        spare = float(self.weight @ self.state) + taken - float(self.weight @ kept)
+        spare = dot(self.weight, self.state) + taken - dot(self.weight, kept)
         room = np.where(self.weight > 0, (high - kept) if spare > 0 else (kept - low), 0.0)
         room = np.where(np.isfinite(room), room, 1.0)
-        whole = float(self.weight @ room)
+        whole = dot(self.weight, room)
         if whole > abs(spare):
             return kept + spare / whole * room, taken
         return kept, taken - spare if abs(spare) <= CLEAN * float(self.weight.sum()) * self.range else taken

@@ -13,6 +13,7 @@ from mpm.jit import kernel
 from mpm.rigid.around import Around, between
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.nodes import apply
+from mpm.rigid.ordered import combined, dot
 
 DAMPING = 2.0 / 13.0
 FIRST = 0.05  # of h^2/diffusivity
@@ -28,7 +29,7 @@ def spectral_radius(problem, conductivity: float) -> float:
     x[problem.weight == 0] = 0.0
     largest = 0.0
     for _ in range(TURNS):
-        size = np.sqrt(problem.weight @ (x * x))
+        size = np.sqrt(dot(problem.weight, x * x))
         if size == 0.0:
             break
         x /= size
@@ -36,7 +37,7 @@ def spectral_radius(problem, conductivity: float) -> float:
         if len(problem.on_potential):
             apply(problem.on_potential, problem.diff, x, z)
         x = (y + conductivity * z) / problem.mass
-        largest = max(largest, float(np.sqrt(problem.weight @ (x * x))))
+        largest = max(largest, float(np.sqrt(dot(problem.weight, x * x))))
     return largest
 
 
@@ -155,4 +156,4 @@ class ChebyshevSteps(Enthalpy):
         s = np.asarray(s, dtype=float)
         basis = np.stack([s * s * (3 - 2 * s), s * (1 - s) ** 2, s * s * (s - 1)], axis=-1)
         start, columns = self.steps
-        return basis, self.columns, start + basis @ columns
+        return basis, self.columns, start + combined(basis, columns)

@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 from mpm.memory import rows
 from mpm.outcome import BUDGET, COMPLETED, MAX_PRINCIPLE, NON_FINITE, STEP_UNDERFLOW
 from mpm.rigid.nodes import interpolate
+from mpm.rigid.ordered import combined, dot
 
 SAFETY, GROW, SHRINK, FEWEST = 0.8, 6.0, 0.2, 1e-12
 
@@ -77,7 +78,7 @@ def record(trace, watch, method, states, exchanged, weight):
         theta = method.temperature(state)
         seen = interpolate(*watch.sight, theta)
         trace.probes.append(interpolate(*watch.probes, theta))
-        trace.mean.append(weight @ theta / weight.sum())
+        trace.mean.append(dot(weight, theta) / weight.sum())
         trace.least.append(seen.min())
         trace.most.append(seen.max())
         trace.heat.append(method.heat(state))
@@ -106,7 +107,7 @@ def crossing(method, watch, before, t, dt, probe, level):
 
     def above(s):
         basis, columns, _ = method.dense(np.array([s]))
-        return float(value @ method.temperature(before[index] + (basis @ columns[:, index])[0])) - level
+        return dot(value, method.temperature(before[index] + combined(basis, columns[:, index])[0])) - level
 
     low, high = above(0.0), above(1.0)
     return t + dt * brentq(above, 0.0, 1.0, xtol=1e-12) if low * high < 0 else t + dt
@@ -161,7 +162,7 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
         if first < len(ahead) and ahead[first] <= new * (1 + 1e-14):
             last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
             basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
-            record(trace, watch, method, before + basis @ columns, exchanged, weight)
+            record(trace, watch, method, before + combined(basis, columns), exchanged, weight)
             judge(trace, watch, method.system.zero, first)
             if trace.code != COMPLETED:
                 trace.final = state
@@ -170,7 +171,7 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
         if shown < len(watch.shots[0]) and watch.shots[0][shown] <= new * (1 + 1e-14):
             last = int(np.searchsorted(watch.shots[0], new * (1 + 1e-14), side="right"))
             basis, columns, _ = method.dense((np.minimum(watch.shots[0][shown:last], new) - t) / dt)
-            trace.shots += [interpolate(*watch.shots[1:], method.temperature(shot)) for shot in before + basis @ columns]
+            trace.shots += [interpolate(*watch.shots[1:], method.temperature(shot)) for shot in before + combined(basis, columns)]
             shown = last
         now = interpolate(*watch.probes, method.temperature(state)) if watch.thresholds else seen
         for k, (probe, level) in enumerate(watch.thresholds):

@@ -16,6 +16,7 @@ from mpm.materials.laws import Constant
 from mpm.rigid.around import Radiant, radiate
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.nodes import apply
+from mpm.rigid.ordered import dot
 from mpm.rigid.tables import Table, enthalpies, make_table, temperatures
 
 ROUNDOFF = 1e-10  # of the heat that moves
@@ -83,14 +84,15 @@ def rate(problem, around, h, out, theta, work):
         apply(problem.on_theta, problem.diff, theta, work)
     taken, total, size = around.received + radiate(problem.radiant, around.sky, theta, work), 0.0, 0.0
     scale = abs(around.received)
-    for i in range(len(h)):
+    for i in range(len(h)):  # sums apart from stores: see mpm.rigid.ordered
         net = around.supply[i] - work[i]
         total += net
         size += abs(net)
-        out[i] = net / problem.mass[i]
         passed = problem.facing[i] * theta[i]
         taken -= passed
         scale += abs(passed)
+    for i in range(len(h)):
+        out[i] = (around.supply[i] - work[i]) / problem.mass[i]
     gap = taken - total
     if abs(gap) <= ROUNDOFF * size + CANCELLED * scale:  # more would be an error, and the ledger has to show it
         gap /= np.sum(problem.weight)
@@ -125,4 +127,4 @@ class Enthalpy:
 
     def heat(self, state):
         """Heat content above `zero` [J]."""
-        return float(state @ self.weight)
+        return dot(state, self.weight)

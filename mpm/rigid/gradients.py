@@ -148,8 +148,9 @@ def _(solver, x, guess):
     b, r, p, z, q = x.copy(), np.empty(n), np.zeros(n), np.empty(n), np.empty(n)
     goal = 0.0
     for i in range(n):
-        goal += b[i] * b[i] / S[0, i]
         x[i] = guess[i]
+    for i in range(n):
+        goal += b[i] * b[i] / S[0, i]
     goal *= solver.tolerance * solver.tolerance
     apply(S, solver.diff, x, q)
     for i in range(n):

@@ -18,6 +18,7 @@ from mpm.jit import kernel
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.gradients import Gradients, invert, inverted, make_factor, make_gradients, ready
 from mpm.rigid.nodes import apply
+from mpm.rigid.ordered import combined, dot
 from mpm.rigid.sdirk import TABLEAUS
 
 FILTERS, ROUNDOFF = 2, 1e-10
@@ -56,6 +57,7 @@ def stages(problem, solver, a, error, filters, dt, u, supply, received, k, flux)
         taken, total, size, scale = received[i], 0.0, 0.0, abs(received[i])
         for p in range(n):
             k[i, p] = work[p]
+        for p in range(n):  # sums apart from stores: see mpm.rigid.ordered
             passed = problem.facing[p] * (y[p] + dt * a[i, i] * work[p])
             taken -= passed
             scale += abs(passed)
@@ -156,18 +158,18 @@ class LinearSteps:
         weights = self.tableau.a[-1]
         self.slopes = self.stages
         self.q_before = self.q
-        self.state = self.state + (self.dt * weights) @ self.stages
-        self.q += self.dt * float(weights @ self.fluxes)
+        self.state = self.state + combined(self.dt * weights, self.stages)
+        self.q += self.dt * dot(weights, self.fluxes)
         self.now += self.dt
 
     def dense(self, s):
         """Basis (S, m) and columns (m, N), exchanged heat (S,): state = before + basis @ columns."""
         basis = self.dt * self.tableau.weights(s)
-        return basis, self.stages, self.q_before + basis @ self.fluxes
+        return basis, self.stages, self.q_before + combined(basis, self.fluxes)
 
     def temperature(self, state):
         return state
 
     def heat(self, state):
         """Heat content above `zero` [J]."""
-        return float(state @ self.weight)
+        return dot(state, self.weight)

@@ -15,6 +15,7 @@ from mpm.jit import kernel
 from mpm.rigid.around import radiate_slope
 from mpm.rigid.band import back_substitute, factorise, make_band
 from mpm.rigid.enthalpy import Enthalpy, rate
+from mpm.rigid.ordered import combined, dot
 from mpm.rigid.sdirk import TABLEAUS
 from mpm.rigid.tables import look_up
 
@@ -91,27 +92,27 @@ class NewtonSteps(Enthalpy):
         return None
 
     def norm(self, residual) -> float:
-        return float(np.sqrt(self.weight @ (residual * residual)))
+        return float(np.sqrt(dot(self.weight, residual * residual)))
 
     def attempt(self, dt: float) -> float:
         a = self.tableau.a
         f, q, guess = np.empty((len(a), len(self.state))), np.empty(len(a)), self.state
         for i, row in enumerate(a):
-            found = self.stage(self.state + (dt * row[:i]) @ f[:i], dt * row[i], self.around(self.now + dt * row.sum()), guess, f[i])
+            found = self.stage(self.state + combined(dt * row[:i], f[:i]), dt * row[i], self.around(self.now + dt * row.sum()), guess, f[i])
             if found is None:
                 return np.inf
             guess, q[i] = found
         self.rates, self.taken, self.dt, self.reached = f, q, dt, guess
-        return self.norm((dt * self.tableau.error) @ f) / self.allowed
+        return self.norm(combined(dt * self.tableau.error, f)) / self.allowed
 
     def accept(self):
         weights = self.dt * self.tableau.a[-1]
         self.before_q = self.q
-        self.state = self.state + weights @ self.rates
-        self.q += float(weights @ self.taken)
+        self.state = self.state + combined(weights, self.rates)
+        self.q += dot(weights, self.taken)
         self.now += self.dt
 
     def dense(self, s):
         """Basis (S, m), columns (m, N), exchanged heat (S,)."""
         basis = self.dt * self.tableau.weights(s)
-        return basis, self.rates, self.before_q + basis @ self.taken
+        return basis, self.rates, self.before_q + combined(basis, self.taken)

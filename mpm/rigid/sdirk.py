@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mpm.rigid.ordered import combined
+
 
 class Tableau(NamedTuple):
     """a (m, m) lower triangular with gamma on the diagonal, error weights b - b^ (m,), dense (m, powers), order of the estimate's step power."""
@@ -27,7 +29,7 @@ class Tableau(NamedTuple):
     def weights(self, s: np.ndarray) -> np.ndarray:
         """w_i(s): (S, m)."""
         powers = np.asarray(s, dtype=float)[:, None] ** np.arange(1, self.dense.shape[1] + 1)
-        return powers @ self.dense.T
+        return combined(powers, self.dense.T)
 
 
 _A = np.zeros((5, 5))
