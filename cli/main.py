@@ -12,6 +12,7 @@ from mpm_cli.bench import bench
 from mpm_cli.chart import chart
 from mpm_cli.collect import collect
 from mpm_cli.compare import compare
+from mpm_cli.export import export
 from mpm_cli.info import info
 from mpm_cli.plan import plan
 from mpm_cli.plot import plot
@@ -25,7 +26,7 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, bench, schema, info, warmup)
+COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, export, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(
@@ -74,6 +75,7 @@ def told(error: Exception) -> int:
 
     # named without importing what the command did not need
     places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
+    places += (("mpm.results", "UnknownPoint"), ("mpm.exports", "ExportError"))
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))

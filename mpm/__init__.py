@@ -18,6 +18,7 @@ _PLACES = {
     "run": "mpm.sweep.api",
     "sweep": "mpm.sweep.api",
     "particles": "mpm.sweep.ragged",
+    "export": "mpm.exports",
     "plan": "mpm.sweep.cases",
     "estimate": "mpm.costs",
     "run_point": "mpm.runner",

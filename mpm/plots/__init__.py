@@ -55,7 +55,7 @@ def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Pat
         raise UnknownFigure(f"one file cannot hold {len(wanted)} figures; leave the file out, or name one figure")
     if path is not None and Path(path).suffix.lower() not in FORMATS:
         raise UnknownFigure(f"{path}: a figure is written as {', '.join(FORMATS)}")
-    dataset = _dataset(Path(out))
+    dataset = dataset_of(Path(out))
     tree, suffix = _open(dataset), ".svg" if svg else ".png"
     targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]
     for name, target in zip(wanted, targets, strict=True):
@@ -63,7 +63,7 @@ def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Pat
     return targets
 
 
-def _dataset(out: Path) -> Path:
+def dataset_of(out: Path) -> Path:
     """The dataset file of a folder: sweep.nc, else run.nc."""
     if out.is_file():
         return out

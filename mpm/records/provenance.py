@@ -1,6 +1,6 @@
 """Where a result comes from: source, versions, machine. Only an allow-list of facts; nothing of the environment.
 
-`source_hash` covers every room that can change a number: all but records, sweep, study and plots.
+`source_hash` covers every room that can change a number: all but those that keep, show or run over what was computed.
 """
 
 import functools
@@ -14,7 +14,7 @@ from pathlib import Path
 from mpm import fingerprint
 
 ROOT = Path(__file__).resolve().parents[1]
-CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "plots"}
+CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "plots", "results", "exports", "movies", "reports"}
 PACKAGES = ("mpm", "numpy", "numba", "llvmlite", "scipy", "h5py", "h5netcdf", "xarray")
 
 
