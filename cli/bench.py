@@ -34,7 +34,7 @@ def bench(
     of an idle machine, use three rounds or more, take ratios of medians, and check first that `check` agrees.
     """
     if config is None:
-        from mpm.integrate.order import SHARED
+        from mpm.integrate.sorting import SHARED
         from mpm.study.bench import BenchError, Options, bench
 
         try:

@@ -24,7 +24,7 @@ def plan(
     smaller models and what they would save, and estimates of time, memory and output. With --tol it runs coarse pilots: they measure the error of
     smaller models and choose basis, transfer, cell, particles and step (the method from the results of mpm chart, the cell from the pilots).
     """
-    from mpm.sweep.outlook import outlook, said
+    from mpm.sweep.plan_report import outlook, said
 
     experiment = load(config, set_, smoke)
     found = outlook(experiment, out, jobs, rerun, max_runs, tol, hear)

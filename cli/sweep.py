@@ -140,7 +140,7 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
 
 def words(result: Any, picture: Any, command: str) -> list[str]:
     """The same for people; `command` goes on with what is left."""
-    from mpm.sweep.tally import told as counts_told
+    from mpm.sweep.queue import told as counts_told
 
     told = [f"{counts_told(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
     told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None and path.exists()]

@@ -1,10 +1,10 @@
-"""Guards of a run of moving bodies (docs/physics.md 15), beside those that sit in the step itself (integrate/respond.py, integrate/explicit.py).
+"""Guards of a run of moving bodies (docs/physics.md 15), beside those that sit in the step itself (integrate/particle_update.py, integrate/explicit.py).
 
-opening   every block of steps looks at what it reads: every field finite, every particle on the grid (integrate/sound.py); `whole` says what was wrong
+opening   every block of steps looks at what it reads: every field finite, every particle on the grid (integrate/state_check.py); `whole` says what was wrong
 block     before it, temperatures: above absolute zero and, where nothing heats, within their data by more than the transfer is known to overshoot (SLOPES,
           NOISE) with `method.bounds: free`, and at all without; a warning from NOTICEABLE on: FLIP's noise beside a cold surface reaches 0.29, APIC's
           slopes 0.05
-frame     every output time: `whole`; no energy from nowhere (GROWTH of the largest so far); bodies in the pieces that they began with (integrate/gaps.py)
+frame     every output time: `whole`; no energy from nowhere (GROWTH of the largest so far); bodies in the pieces that they began with (integrate/fragments.py)
 explain   after a failure: which field of which particle was first, and what to do: the step against the limits that held
 Cost      0.7 % of a run of 10 000 particles in 2-D whose heat steps cut blocks to 13 steps, with a frame every hundred (pytest -m slow tests/test_guards.py):
           the opening 12 us a block, temperatures 20 us, an output time 210 us
@@ -17,8 +17,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mpm.integrate.gaps import STRETCH, torn
-from mpm.integrate.sound import span, unsound
+from mpm.integrate.fragments import STRETCH, torn
+from mpm.integrate.state_check import span, unsound
 from mpm.integrate.surroundings import Surroundings
 from mpm.materials import Hencky
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, Outcome, outcome
@@ -40,7 +40,7 @@ class Guards:
         ) and not any(len(reference.load) for reference in scene.references)
         self.begun = math.nan
         self.most = 0.0
-        self.pieces: list[list[int]] | None = None  # of each body at the start (integrate/gaps.py)
+        self.pieces: list[list[int]] | None = None  # of each body at the start (integrate/fragments.py)
         self.warned: list[str] = []
 
     def memory(self) -> dict:
@@ -62,7 +62,7 @@ class Guards:
             one.heats, one.flux = one.heats or other.heats, one.flux or other.flux
 
     def block(self, scene, clock) -> Outcome:
-        """Before a block of steps: temperatures. All else is looked at as the block opens (integrate/sound.py)."""
+        """Before a block of steps: temperatures. All else is looked at as the block opens (integrate/state_check.py)."""
         self.share(scene)
         if all(data.judge(body) is None for body, data in zip(scene.bodies, self.data, strict=True) if isinstance(body.thermal, Thermal)):
             return outcome(COMPLETED)

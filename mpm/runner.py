@@ -16,7 +16,7 @@ import numpy as np
 
 from mpm import compiling
 from mpm.costs import estimate
-from mpm.integrate.order import SHARED
+from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
 from mpm.records.provenance import cores
 from mpm.records.variables import is_total, turn
@@ -40,7 +40,7 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
 
     compare    False leaves out the errors against the exact solution, which cost time that a run does not need; what starts from it still does
     keeper     what the run remembers (mpm.memory), to go on where it was cut; None where nobody keeps it
-    threads    that share the work of one large run (mpm.integrate.slabs); the result is the same for any number
+    threads    that share the work of one large run (mpm.integrate.step_threaded); the result is the same for any number
     """
     if not compiling.begun():
         compile_ahead(experiment)

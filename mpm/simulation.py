@@ -15,17 +15,17 @@ from mpm.contact.block import advance_block, work_arrays
 from mpm.contact.insync import in_sync
 from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
-from mpm.integrate import heat_latent  # noqa: F401 - registers the laws of specific heat that follow temperature
+from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.bounds import bounds_of, keep_between
+from mpm.integrate.fracture_surface import tear_open
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
-from mpm.integrate.order import Order
-from mpm.integrate.sharpen import correct, lost_to_grid
+from mpm.integrate.sorting import Order
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
-from mpm.integrate.tears import tear_open
 from mpm.integrate.timestep import SUBSTEPS, Limits
+from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder, stops
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
@@ -64,7 +64,7 @@ class Scene:
     step: float | None  # None: automatic
     safety: float
     heat_step: float | None
-    surroundings: tuple = ()  # by body: mpm.integrate.surroundings.Surroundings or None; seams: mpm.integrate.tears.Seams or None
+    surroundings: tuple = ()  # by body: mpm.integrate.surroundings.Surroundings or None; seams: mpm.integrate.fracture_surface.Seams or None
     seams: tuple = ()
     outlines: tuple = ()  # mpm.follow.Carried: points of its surface; without them no extents are recorded
     heat: HeatMethod = HeatMethod()

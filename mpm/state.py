@@ -176,7 +176,7 @@ class NoSource(NamedTuple):
 
 
 class Source(NamedTuple):
-    """A force and a heat source that a law gives at every particle, over time (integrate/source.py)."""
+    """A force and a heat source that a law gives at every particle, over time (integrate/body_force.py)."""
 
     X: np.ndarray  # (N, D) position at the start [m]
     t: np.ndarray  # (N,) time of the particle [s]
@@ -184,7 +184,7 @@ class Source(NamedTuple):
 
 
 class Load(NamedTuple):
-    """Nominal tractions on parts of a body's surface, and a drag (integrate/load.py)."""
+    """Nominal tractions on parts of a body's surface, and a drag (integrate/traction.py)."""
 
     force: np.ndarray  # (N, D) at full load [N]
     dipole: np.ndarray  # (N, D, D) sum over pieces of force times offset from the particle, in the reference state [N m]
@@ -201,7 +201,7 @@ class NoAverage(NamedTuple):
 
 
 class Average(NamedTuple):
-    """Changes of volume averaged over the grid (integrate/locking.py): scratch of one step, and how much of its own change a particle keeps."""
+    """Changes of volume averaged over the grid (integrate/fbar.py): scratch of one step, and how much of its own change a particle keeps."""
 
     change: np.ndarray  # (n,) volume change of a step [-]
     volume: np.ndarray  # (n,) [m^D]
@@ -222,7 +222,7 @@ class Body(NamedTuple):
     locking: Any = NoAverage()  # or Average
 
 
-PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/order.py)
+PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/sorting.py)
     Particles: Particles._fields,
     Thermal: ("theta", "c"),
     Surface: ("row",),

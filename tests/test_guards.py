@@ -197,7 +197,7 @@ def test_guards_cost_less_than_a_hundredth(core, monkeypatch):
     """Time in guards over time in the run: ten thousand particles in two dimensions, heat steps of 13 steps, a frame every hundred."""
     from numba import njit
 
-    from mpm.integrate.sound import sound
+    from mpm.integrate.state_check import sound
     from mpm.transfer import CHUNK
 
     bodies = {"body": {"shape": {"box": {"lower": [1.0, 1.0], "upper": [13.5, 13.5]}}, "temperature": core.HOT, "material": "solid"}}

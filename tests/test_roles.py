@@ -126,20 +126,20 @@ ELSEWHERE = {
     "impulse_parts(Mls)", "carry(Xpic)", "wants_change(Xpic)", "sharpen(Xpic)", "what_is_lost(Isothermal)", "what_is_lost(Thermal)",
     "nodes_of(Plane)", "nodes_of(Axisymmetric)", "nodes_of(Volume)", "advance_heat(Isothermal)", "advance_implicit(Isothermal)",
     "meet(NoExchange)", "place(NoExchange)", "radiate(Radiation)", "rise(Bump)", "rise(Logistic)", "rise(Table)",
-    "rises(Bump)", "rises(Logistic)", "rises(Table)", "heat_eight(NoHeating)", "heat_eight(GridHeating)", "grow_warmer(Isothermal)",  # tests/heat/test_many.py
+    "rises(Bump)", "rises(Logistic)", "rises(Table)", "heat_eight(NoHeating)", "heat_eight(GridHeating)", "grow_warmer(Isothermal)",  # tests/heat/test_lanes.py
     "thermal_stress(Latched)", "latch(Latched)", "flows(EllipseClipped)", "flows(EllipseRadial)",
     "act(Source)", "take_up(Isothermal)", "take_up(Thermal)",  # tests/verification/test_manufactured.py
     "thermal_stress(Softening)", "latch(Softening)",  # tests/point/test_laws.py
     "heat_locally(GridHeating)", "compress(GridHeating)",  # tests/integrate/test_grid_heating.py
     "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
-    "act(Load)", "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/integrate/test_load.py, tests/heat/test_exchange_kinds.py
-    "react_plane(NeoHookean)", "react_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
+    "act(Load)", "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/integrate/test_traction.py, tests/heat/test_exchange_kinds.py
+    "stress_plane(NeoHookean)", "stress_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
     "warms(NoHeating)", "carry_surface(NoExchange)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
     "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
     *(f"{way}_by_law({law})" for way in ("explicit", "stabilised", "implicit") for law in ("Table", "Logistic")),  # tests/integrate/test_implicit_heat.py
     "explicit_by_law(Constant)",  # the same
-    "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_locking.py
+    "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_fbar.py
     "grown(Line)", "grown(Plane)", "grown(Axisymmetric)", "grown(Volume)",  # the same
 }  # fmt: skip
 

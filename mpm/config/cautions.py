@@ -6,7 +6,7 @@ from typing import Any
 from mpm.config.names import ROOT, Names, UnknownName
 from mpm.config.nodes import Node
 from mpm.config.quantities import Quantity
-from mpm.config.slots import Path, Slot, leaves
+from mpm.config.schema_paths import Path, Slot, leaves
 
 COLD = 223.15  # K, -50 °C: below it a number without a unit was rather meant in degrees Celsius
 MOST_TOLD = 5

@@ -14,9 +14,9 @@ from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
 from mpm.config import rules_size as size
 from mpm.config.explain import Finding
-from mpm.config.loose import Unknown
+from mpm.config.partial import Unknown
 from mpm.config.problems import MOST_FINDINGS
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 
 Rule = Callable[..., Iterable[Finding]]
 

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from mpm.config.nodes import BAD, Node
 from mpm.config.problems import MOST_FINDINGS, Problem, brief, listed, near
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 
 EXPECTED = {
     "model_type": "a mapping",

@@ -9,15 +9,15 @@ from pydantic import ValidationError
 from mpm.config.checks import check
 from mpm.config.experiment import Experiment
 from mpm.config.explain import Finding, findings, problems, shown
-from mpm.config.loose import MISSING, Unknown, loose
 from mpm.config.measured import embed
 from mpm.config.merge import extend, put
 from mpm.config.names import GREEK, ROOT, Names, UnknownName
 from mpm.config.nodes import BAD, Node, Origin, lines, read, read_file, wrap
 from mpm.config.parameters import Binder, named
+from mpm.config.partial import MISSING, Unknown, loose
 from mpm.config.problems import ConfigError, Problem, brief, listed
 from mpm.config.rules_stability import findings as map_findings
-from mpm.config.slots import Path
+from mpm.config.schema_paths import Path
 from mpm.config.vary import Vary
 
 MOST_SETTINGS = 100

@@ -5,7 +5,7 @@ from typing import Any
 
 from mpm.config.nodes import BAD, Node, read_file
 from mpm.config.problems import Problem, near
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 
 MOST_BASES = 20
 

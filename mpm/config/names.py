@@ -8,7 +8,7 @@ from mpm.config.experiment import Experiment
 from mpm.config.laws import Constant
 from mpm.config.parameters import slot_of
 from mpm.config.problems import near
-from mpm.config.slots import Path, Slot, leaves, places
+from mpm.config.schema_paths import Path, Slot, leaves, places
 
 GREEK = {"κ": "kappa", "β": "beta", "α": "alpha", "η": "eta"}
 NOT_VARIED = ("title", "sweep", "smoke", "chart", "stability", "fit", "formulas")

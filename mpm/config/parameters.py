@@ -17,7 +17,7 @@ from mpm.config.explain import Finding
 from mpm.config.nodes import BAD, Node
 from mpm.config.problems import listed, near
 from mpm.config.quantities import Number, Quantity
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 
 SIGN = "="
 APART = ("title", "sweep", "smoke", "chart", "stability", "fit", "formulas")  # hold no number of the scene

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from mpm.config.explain import Finding
-from mpm.config.loose import Unknown
+from mpm.config.partial import Unknown
 from mpm.config.rules_scene import moves
 
 OWN = "leave it out: velocities and temperatures stay on the nodes; or method.frame: updated"

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from mpm.config.explain import Finding
-from mpm.config.loose import MISSING, Unknown
+from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import near
 from mpm.config.rules_scene import heats, moves, plain_names, vector
 from mpm.config.shapes_fit import bounds, home, misfits

@@ -6,10 +6,10 @@ from typing import Any
 
 from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES
 from mpm.config.explain import Finding
-from mpm.config.loose import MISSING, Unknown
+from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import near
+from mpm.config.schema_paths import Path
 from mpm.config.shapes_fit import misfits, outside
-from mpm.config.slots import Path
 
 MOST_CELLS = 10**9
 MOST_LETTERS = 100  # of a name: it becomes a variable's, and those of HDF5 end at 64 kB

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 
 from mpm.config.explain import Finding
 from mpm.config.explain import findings as explained
-from mpm.config.loose import MISSING, Unknown
 from mpm.config.names import ROOT, Names
+from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import listed
 from mpm.config.sweep import Sweep
 from mpm.config.vary import Vary

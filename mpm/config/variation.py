@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mpm.config.condition import Condition, Formula
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 
 
 @dataclass

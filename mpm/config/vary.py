@@ -16,7 +16,7 @@ from mpm.config.laws import Law
 from mpm.config.names import Names, UnknownName
 from mpm.config.problems import MOST_FINDINGS, listed
 from mpm.config.quantities import Whole
-from mpm.config.slots import Path, Slot
+from mpm.config.schema_paths import Path, Slot
 from mpm.config.variation import Derived, Group, Parameter, Variation, at_path, label
 
 MOST_PARAMETERS = 100

@@ -9,7 +9,7 @@ from mpm.boundary.blocks import new_blocks
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
-from mpm.integrate.slabs import advance_slabs
+from mpm.integrate.step_threaded import advance_slabs
 from mpm.integrate.strain import PARTICLE, SPEED
 from mpm.integrate.timestep import WAVE, limits
 from mpm.lanes import aligned

@@ -16,7 +16,7 @@ from mpm.heat.exchange import meet
 from mpm.integrate.heat_implicit import GAMMA, combine, conductances, drop_ghosts, inside, load, take, wipe
 from mpm.integrate.heat_matrix import MOST, SHIFT, incomplete, matrix, product, smooth
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
-from mpm.integrate.pieces import place, temperature_at
+from mpm.integrate.surface_flux import place, temperature_at
 from mpm.jit import kernel
 from mpm.transfer import CHUNK
 

@@ -14,9 +14,9 @@ from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import press
 from mpm.contact.weights import weigh
 from mpm.integrate.explicit import clean, pass_body, update
+from mpm.integrate.fbar import any_averages, average_all
 from mpm.integrate.grid_heating import compress_all
-from mpm.integrate.locking import any_averages, average_all
-from mpm.integrate.sharpen import sharpen
+from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
 from mpm.transfer import new_chunk, uses_basis_gradient, wants_change
 

@@ -1,7 +1,7 @@
 """Heat at particles and surfaces of bodies that move.
 
 local.py     thermal stress, elastic and dissipative heating, temperature rise through enthalpy
-many.py      the same over lanes: heating of eight particles, laws and rises of a row
+lanes.py      the same over lanes: heating of eight particles, laws and rises of a row
 exchange.py  meet(surface, s, theta, ...): every exchange of a piece as beta (outside - theta) + q; radiation by its secant
 programmes.py  temperatures over time
 surface.py   area_and_offset(space, ...): a surface piece in the current shape

@@ -14,15 +14,15 @@ from mpm.basis import room
 from mpm.boundary import directions, extents
 from mpm.boundary.blocks import BLOCK, forget, mark_box, run, span, thin, wipe
 from mpm.boundary.walls import empty, fold, impose, unfold
+from mpm.integrate.active_nodes import reaches, touch
 from mpm.integrate.dither import dither
+from mpm.integrate.fbar import any_averages, average_all, relax
 from mpm.integrate.grid_heating import compress_all
-from mpm.integrate.load import act
-from mpm.integrate.locking import any_averages, average_all, relax
-from mpm.integrate.respond import respond
-from mpm.integrate.sharpen import sharpen
-from mpm.integrate.sound import sound
+from mpm.integrate.particle_update import respond
+from mpm.integrate.state_check import sound
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
-from mpm.integrate.touch import reaches, touch
+from mpm.integrate.traction import act
+from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE, UNSOUND
@@ -35,7 +35,7 @@ def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls,
     """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run. kick: how long the impulse of the first acts (contact/insync.py).
 
     nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
-    boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see respond.py.
+    boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see particle_update.py.
     Returns early where a particle fails.
     """
     chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))

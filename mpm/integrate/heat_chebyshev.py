@@ -20,7 +20,7 @@ import numpy as np
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, fold, unfold
 from mpm.integrate.heat_step import conduct, gather_heat, over_nodes, reach, scatter_heat
-from mpm.integrate.pieces import exchange, place
+from mpm.integrate.surface_flux import exchange, place
 from mpm.integrate.timestep import SUBSTEPS
 from mpm.jit import kernel, role
 from mpm.materials.laws import Constant
@@ -60,7 +60,7 @@ def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
 
 @role
 def stabilised_by_law(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
-    """heat_chebyshev of a body with heat, by the law of its specific heat: heat_latent.py where it follows temperature."""
+    """heat_chebyshev of a body with heat, by the law of its specific heat: enthalpy_steps.py where it follows temperature."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 

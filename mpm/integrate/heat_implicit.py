@@ -15,10 +15,10 @@ import numpy as np
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.walls import clear, fold, unfold
 from mpm.heat.exchange import meet
-from mpm.heat.many import specify
+from mpm.heat.lanes import specify
 from mpm.integrate.heat_matrix import conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
-from mpm.integrate.pieces import load_piece, place, temperature_at
+from mpm.integrate.surface_flux import load_piece, place, temperature_at
 from mpm.jit import kernel, role
 from mpm.materials.laws import Constant
 from mpm.state import PAD, Isothermal, Thermal
@@ -51,7 +51,7 @@ def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
 
 @role
 def implicit_by_law(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
-    """heat_implicit of a body with heat, by the law of its specific heat: one linear solution a stage where it is constant, heat_latent.py elsewhere."""
+    """heat_implicit of a body with heat, by the law of its specific heat: one linear solution a stage where it is constant, enthalpy_steps.py elsewhere."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 

@@ -1,8 +1,8 @@
 """One explicit heat step (docs/physics.md 3, 10, 11).
 
 C_i = sum alpha m w,   C_i theta_i = sum alpha m w (theta_p + c_p d)
-C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~: integrate/pieces.py
-theta_p += sum w d(theta_i) + blend (sum w theta_i - theta_p),   c_p = affine sum w theta_i+ d/(sum w d^2)      alpha(theta): heat_latent.py
+C_i d(theta_i) = dt [ sum V q grad(w) - sum S beta (theta_s - theta_out) w~ ],   q = -kappa grad(theta),   w~: integrate/surface_flux.py
+theta_p += sum w d(theta_i) + blend (sum w theta_i - theta_p),   c_p = affine sum w theta_i+ d/(sum w d^2)      alpha(theta): enthalpy_steps.py
 
 Both w and w~ sum to one over the nodes, and grad(w) to nothing, so the heat of the particles changes by exactly what the surface exchanged,
 whatever alpha is. blend = 1 and affine = 1 is APIC; blend = affine = 0 is FLIP; blend = 1, affine = 0 is PIC.
@@ -15,8 +15,8 @@ import numpy as np
 from mpm.basis import stencil
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, unfold
-from mpm.heat.many import specify, warm_up
-from mpm.integrate.pieces import exchange, place
+from mpm.heat.lanes import specify, warm_up
+from mpm.integrate.surface_flux import exchange, place
 from mpm.jit import kernel, role
 from mpm.materials.laws import Constant
 from mpm.state import Isothermal, Thermal
@@ -49,7 +49,7 @@ def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
 
 @role
 def explicit_by_law(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
-    """heat_step of a body with heat, by the law of its specific heat: heat_latent.py where it follows temperature."""
+    """heat_step of a body with heat, by the law of its specific heat: enthalpy_steps.py where it follows temperature."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 

@@ -2,7 +2,7 @@
 
 elastic wave      1/2 h sqrt(R0/(d lam + 2 mu)) / sqrt(1 + eps_c) / sqrt(1 + |eps_min|)      isolated particles included
 advection         h/(2 |v|)                                                                  half a cell a step
-velocity gradient 1/(4 |grad v|)                                                             half of the guard in respond.py
+velocity gradient 1/(4 |grad v|)                                                             half of the guard in particle_update.py
 drag              1/(2 rate)                                                                 a quarter of the limit of an explicit drag
 heat              1/(rate_conduction + rate_exchange), with
 conduction        kappa J/(0.4 R0 alpha h^2)

@@ -20,13 +20,13 @@ To add    a file here that registers its NamedTuple with the roles of its kind, 
 
 from mpm.materials.clipped import EllipseClipped
 from mpm.materials.hencky import Hencky
+from mpm.materials.lanes import enthalpies, temperatures, values
 from mpm.materials.laws import Bump, Constant, Logistic, Table, table
-from mpm.materials.many import enthalpies, temperatures, values
 from mpm.materials.neo_hookean import NeoHookean
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
-from mpm.materials.returns import return_map
+from mpm.materials.return_maps import return_map
 from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, temperature_of, value, warmed
 from mpm.materials.warm import HenckyWarm
 

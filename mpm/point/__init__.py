@@ -6,7 +6,7 @@ state.py    Matter (laws and state of a batch), Program (what is prescribed, whe
 pick.py     role `pick(law, i)`: the law of point i from a law of arrays; `stack` makes such a law
 heat.py     temperature and enthalpy of a point; role `exchange`
 step.py     role `relaxation`; one step: heat, strain, flow, heating, stress; directions with prescribed stress by Newton
-march.py    the loop over points, output times and steps
+time_loop.py    the loop over points, output times and steps
 run.py      solve(...): arrays -> Runs
 
 A point stands for one cubic metre of undeformed material: its mass is the density, its energies are per reference volume.

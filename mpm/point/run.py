@@ -6,8 +6,8 @@ import numpy as np
 
 from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, Outcome, outcome
-from mpm.point.march import advance
 from mpm.point.state import COLUMNS, NO_EQUILIBRIUM, WIDTH, Matter, Program, Progress, Rigid
+from mpm.point.time_loop import advance
 from mpm.state import Isothermal, Run
 
 ADVICE = "the prescribed stress may be past what the material bears (eta = 0 has a limit load), or lower `time.step`"

@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from mpm.outcome import Outcome
+from mpm.reduce.difference import pilot, shifts, widest
 from mpm.reduce.dimension import axisymmetric, fewer
-from mpm.reduce.gap import pilot, shifts, widest
 from mpm.reduce.lumped import lumped
 from mpm.reduce.offers import Offer, asked, driving, refused
 from mpm.reduce.physics import no_flow, no_heat, one_way, rigid
@@ -79,7 +79,7 @@ def judged(experiment: Any, name: str, left: float, run: Callable | None) -> Tak
 def worthwhile(experiment: Any) -> bool:
     """Whether a pilot is much cheaper than the run."""
     from mpm.costs import estimate
-    from mpm.reduce.gap import rough_form
+    from mpm.reduce.difference import rough_form
 
     rough = rough_form(experiment)
     try:

@@ -5,7 +5,7 @@ from typing import Any
 
 from mpm.costs import estimate
 from mpm.reduce.choose import DIRECTIONS, PHYSICS, Stopped, candidates, named, offered
-from mpm.reduce.gap import pilot, rough_form
+from mpm.reduce.difference import pilot, rough_form
 from mpm.reduce.offers import Offer, asked, refused
 
 LEFT = 0.01  # the tolerance that choices inside an offer see where none is named

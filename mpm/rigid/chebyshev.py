@@ -10,10 +10,10 @@ Fails when   beta h/kappa is large (lambda grows with it): implicit then.
 import numpy as np
 
 from mpm.jit import kernel
-from mpm.rigid.around import Around, between
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.nodes import apply
 from mpm.rigid.ordered import combined, dot
+from mpm.rigid.surroundings import Around, between
 
 DAMPING = 2.0 / 13.0
 FIRST = 0.05  # of h^2/diffusivity

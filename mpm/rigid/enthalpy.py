@@ -13,10 +13,10 @@ import numpy as np
 
 from mpm.jit import kernel
 from mpm.materials.laws import Constant
-from mpm.rigid.around import Radiant, radiate
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.nodes import apply
 from mpm.rigid.ordered import dot
+from mpm.rigid.surroundings import Radiant, radiate
 from mpm.rigid.tables import Table, enthalpies, make_table, temperatures
 
 ROUNDOFF = 1e-10  # of the heat that moves
@@ -103,7 +103,7 @@ def rate(problem, around, h, out, theta, work):
 
 
 class Enthalpy:
-    """What the enthalpy methods share: see the protocol in mpm.rigid.drive."""
+    """What the enthalpy methods share: see the protocol in mpm.rigid.time_loop."""
 
     def __init__(self, system, tolerance: float):
         self.system, self.tolerance = system, tolerance

@@ -87,7 +87,7 @@ def stages(problem, solver, a, error, filters, dt, u, supply, received, k, flux)
 
 
 class LinearSteps:
-    """Implicit steps of one body; the driver's protocol is in mpm.rigid.drive."""
+    """Implicit steps of one body; the driver's protocol is in mpm.rigid.time_loop."""
 
     CARRIES = ("state", "q", "now", "slopes")
     radius = 0.0

@@ -12,11 +12,11 @@ Good values  large beta h/kappa (beta = inf), fine cells with smooth alpha(theta
 import numpy as np
 
 from mpm.jit import kernel
-from mpm.rigid.around import radiate_slope
 from mpm.rigid.band import back_substitute, factorise, make_band
 from mpm.rigid.enthalpy import Enthalpy, rate
 from mpm.rigid.ordered import combined, dot
 from mpm.rigid.sdirk import TABLEAUS
+from mpm.rigid.surroundings import radiate_slope
 from mpm.rigid.tables import look_up
 
 ITERATIONS, HALVINGS, CLOSE = 25, 8, 1e-2  # residual in enthalpy over the step's tolerance

@@ -11,12 +11,12 @@ from mpm.materials.roles import enthalpy, value
 from mpm.outcome import COMPLETED, MAX_PRINCIPLE, Outcome, outcome
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
-from mpm.rigid.drive import Trace, Watch, drive
 from mpm.rigid.geometry import evaluated
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
 from mpm.rigid.nodes import interpolate
 from mpm.rigid.system import RigidBody, System, law, make_system
+from mpm.rigid.time_loop import Trace, Watch, drive
 
 STEPS, FACTORS, LINEAR = 150, 500, 20  # of a run at the default tolerance: explicit steps, factorisations of Newton and of constant laws
 LARGE, LESS = 2e10, 5e8  # multiply-adds of one factorisation that nobody waits for (3 s), and above which conjugate gradients are quicker, unless STIFF

@@ -15,9 +15,9 @@ from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import at, bounds
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
-from mpm.rigid.around import Programmes, Radiant
 from mpm.rigid.geometry import Geometry, evaluated, geometry
 from mpm.rigid.hats import hat_geometry, over_depth
+from mpm.rigid.surroundings import Programmes, Radiant
 
 PENALTY = 1e5
 

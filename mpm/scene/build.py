@@ -16,15 +16,15 @@ from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Neo
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.exchange import pieces_of
+from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.inventory import ticks
 from mpm.scene.law import law
-from mpm.scene.load import loaded
 from mpm.scene.meeting import cornered, meeting, plan_meetings
 from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
-from mpm.scene.seams import refuse_idle, surface_and_seams
 from mpm.scene.shapes import cells, shape
+from mpm.scene.traction import loaded
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
     PAD,

@@ -1,7 +1,7 @@
 """Exact quadrature of a region cut by a grid.
 
-A plane region is bounded by `Segment`s and `Arc`s, run so that the inside is on the left. Each is split where it crosses a
-grid line (mpm.scene.trace), and over a cut cell the divergence theorem turns the area integral of f into strips between the boundary and one edge of the cell,
+A plane region is bounded by `Segment`s and `Arc`s, run so that the inside is on the left. Each is split where it crosses
+a grid line (cut_boundary.py), and over a cut cell the divergence theorem turns the area integral of f into strips between the boundary and an edge of the cell,
 
     int_cell f dA = sum_pieces int (int_ref^y f dy') n_y ds + int_(opposite edge, inside) (int_ref^opposite f dy') dx ,
 

@@ -187,8 +187,8 @@ def exchanges(surface) -> list[tuple[float, float]]:
 
 def estimate(experiment) -> dict:
     """Size, limits and cost of one point, without running it: the automatic step at the start, at most 1000 an output interval."""
-    from mpm.point.march import MOST as LEAST
     from mpm.point.step import shares
+    from mpm.point.time_loop import MOST as LEAST
 
     one = spot(experiment)
     plain = getattr(shares, "py_func", shares)  # nothing is compiled for a plan

@@ -16,8 +16,8 @@ import numpy as np
 from mpm.scene import cut as cutting
 from mpm.scene.contents import CutCells, particles, stacked, weigh
 from mpm.scene.cut import Segment
+from mpm.scene.cut_boundary import plane
 from mpm.scene.sphere import ball, circle
-from mpm.scene.trace import plane
 
 Point = tuple[float, ...]
 

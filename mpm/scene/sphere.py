@@ -2,7 +2,7 @@
 
 At height z the sphere is a circle of radius rho(z), its area element is R dphi dz (Archimedes) and n_z dS = (z - c) dphi dz: the divergence
 theorem along z needs only the arc of that circle inside each column of cells (one arc, as columns are split at the centre), and discs cut at the
-grid's heights (mpm.scene.trace). Between heights at which the circle passes through a corner of the column the arc's ends are smooth in z, with square
+grid's heights (mpm.scene.cut_boundary). Between heights at which the circle passes through a corner of the column the arc's ends are smooth in z, with square
 roots at the touching heights, which z = a + (b - a) s^2 (3 - 2 s) takes away. Surface comes in blocks of ROWS.
 Measured at four offsets, 2 to 10 cells a radius, against 32 heights: volume 3e-9, area 3e-9 of the whole; 2e-5 of a cell and of its face in the worst cell.
 """
@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from mpm.scene.cut import EDGE, NONE, Arc, Batch, Cut, Skin, filled, gauss
-from mpm.scene.trace import plane, strips
+from mpm.scene.cut_boundary import plane, strips
 
 EIGHTHS = tuple(np.linspace(-np.pi, np.pi, 9).tolist())
 ROWS = 2_500  # of points that are held at once

@@ -12,7 +12,7 @@ import numpy as np
 from mpm.boundary import directions
 from mpm.config import ConfigError, load
 from mpm.integrate.explicit import move
-from mpm.integrate.respond import respond
+from mpm.integrate.particle_update import respond
 from mpm.integrate.strain import REPORT
 from mpm.integrate.timestep import limits
 from mpm.jit import kernel

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from mpm.config.vary import label
-from mpm.reduce.gap import STEADY
+from mpm.reduce.difference import STEADY
 from mpm.study.richardson import SAFETY
 from mpm.study.richardson import order as fitted
 
@@ -244,7 +244,7 @@ class Gauge:
 
 
 def size(series: np.ndarray | None, last: float) -> float:
-    """What counts as 100 % of a quantity: how much it changes in the run, at least STEADY of its size (mpm.reduce.gap); of a time, the time itself."""
+    """What counts as 100 % of a quantity: how much it changes in the run, at least STEADY of its size (mpm.reduce.difference); of a time, the time itself."""
     if series is None or not np.isfinite(series).any():
         return abs(last) or 1.0
     return max(float(np.nanmax(series) - np.nanmin(series)), STEADY * float(np.nanmax(np.abs(series)))) or 1.0

@@ -1,7 +1,7 @@
 """No more model than a scene needs, measured: `python -m mpm.study.reduction` writes configs/studies/reduction/README.md.
 
 Every config there says `model: auto`. It is run so and as the full model, in turn; the true error is the largest difference between the two in anything
-that the config asks for (mpm.reduce.gap), beside the error that was predicted without running the full model. Time counts the whole of `model: auto`:
+that the config asks for (mpm.reduce.difference), beside the error that was predicted without running the full model. Time counts the whole of `model: auto`:
 choosing, pilots, the run. Names of configs after the command measure those alone and print their lines. What is measured is kept in
 results/reduction.json until the config or the source changes, so an interrupted study goes on where it stopped.
 """
@@ -64,7 +64,7 @@ class Line:
 def measure(path: Path) -> Line:
     """Run one config both ways. A full model that does not complete leaves nothing to compare with: its error is infinite."""
     from mpm.config import load
-    from mpm.reduce.gap import gap
+    from mpm.reduce.difference import gap
     from mpm.reduce.offers import asked, driving
     from mpm.runner import run_point, warm
 

@@ -46,7 +46,7 @@ def relaxed(p: np.ndarray, q: np.ndarray, p0: np.ndarray, eta: np.ndarray, form:
 
 def mapped(e: np.ndarray, p0: np.ndarray, eta: np.ndarray, form: str, steps: int) -> tuple[np.ndarray, float]:
     """(strains after one second in `steps` steps, processor seconds a state)."""
-    from mpm.materials.returns import map_all
+    from mpm.materials.return_maps import map_all
 
     ones = np.ones_like(p0)
     out, held = np.empty_like(e), e.copy()

@@ -1,6 +1,6 @@
 """Three ways to exchange heat at a free surface, measured on bodies at rest (docs/physics.md 3, 10 and 11). `python -m mpm.study.surfaces` prints the table.
 
-exact     from the boundary particle, corrected to the surface: w~ = w + grad(w) (x_s - x_p). What moving bodies use (mpm.integrate.pieces)
+exact     from the boundary particle, corrected to the surface: w~ = w + grad(w) (x_s - x_p). What moving bodies use (mpm.integrate.surface_flux)
 depth     at the boundary particle, through the layer above it: w, and beta/(1 + beta d/kappa), d = V/(2 S)
 samples   massless points on the surface itself: w(x_s)
 

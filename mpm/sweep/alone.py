@@ -18,9 +18,9 @@ from mpm.records.variables import PENDING, STATUS
 from mpm.sweep import engine
 from mpm.sweep.api import sound, swept_paths, taken
 from mpm.sweep.lock import Refused
-from mpm.sweep.room import Room
+from mpm.sweep.queue import Points, missing, stale
+from mpm.sweep.resources import Resources
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Points, missing, stale
 
 
 @dataclass
@@ -68,7 +68,7 @@ def run_in(
             return One(record, write(store, experiment, case, record, smoke), ran=False)
         if rerun == "all":
             store.forget([case.run_id])
-        room = Room(store.out, None, far=False)
+        room = Resources(store.out, None, far=False)
         if refusal := room.refusal(room.need(case.experiment)):
             raise Refused(f"the point {refusal}; a coarser grid.cell, fewer particles a cell or fewer snapshots need less")
         keeper = Checkpoint(store.checkpoint(case.run_id), case.run_id, every, note)

@@ -15,14 +15,14 @@ from typing import Any
 
 from mpm.records.provenance import cores
 from mpm.sweep import engine
+from mpm.sweep.background_collect import Gather, NotCollected
 from mpm.sweep.engine import Engine, Options
-from mpm.sweep.gather import Gather, NotCollected
-from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Lock, Refused, said_owner
+from mpm.sweep.queue import Points, counts, exit_code, stale, warned
 from mpm.sweep.report import Reporter
 from mpm.sweep.result import Result
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Points, counts, exit_code, stale, warned
+from mpm.sweep.summaries import Summaries
 
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -75,7 +75,7 @@ def execute(
                 if others := 0 if options.rerun in ("stale", "all") else len(stale(lines)):
                     reporter.note(f"{others} of the points that are there were made by other source; --rerun stale runs them again")
                 if supervisor.due:
-                    if warning := supervisor.room.warning(len(supervisor.due), points.cases[supervisor.due.first].experiment):
+                    if warning := supervisor.resources.warning(len(supervisor.due), points.cases[supervisor.due.first].experiment):
                         reporter.note(warning)
                     run_engine(supervisor, options)
             finally:
@@ -107,7 +107,7 @@ def taken(store: Store, note: Callable[[str], None], **more: Any) -> Iterator[No
         yield
 
 
-def sound(store: Store, points: Points, note: Callable[[str], None]) -> Lines:
+def sound(store: Store, points: Points, note: Callable[[str], None]) -> Summaries:
     """Summaries of the points that are there; files that are not as they were written are set aside."""
     lines, damaged = store.lines(points.ids)
     for name in damaged:
@@ -142,10 +142,10 @@ def run_engine(supervisor: Engine, options: Options) -> None:
     if options.scheduler is not None:
         from mpm.sweep.cluster import Cluster
 
-        out, memory = supervisor.store.out.resolve(), supervisor.room.limit
+        out, memory = supervisor.store.out.resolve(), supervisor.resources.limit
         supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, out, options.jobs, memory))
         return
-    supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.room.limit))
+    supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.resources.limit))
 
 
 @contextlib.contextmanager
@@ -167,7 +167,7 @@ def signals(heard: Callable[[str], None]) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def folder_plan(out: Path) -> tuple[Store, Any, Points, dict, Lines, list[str]]:
+def folder_plan(out: Path) -> tuple[Store, Any, Points, dict, Summaries, list[str]]:
     """A sweep's folder, read back: store, plan, its points, experiment.json, lines, damaged ids."""
     from mpm.config import load
 

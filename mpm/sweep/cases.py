@@ -20,10 +20,10 @@ from mpm.config.explain import Finding, findings, problem
 from mpm.config.names import ROOT, Names
 from mpm.config.nodes import Node, Origin, wrap
 from mpm.config.problems import ConfigError
-from mpm.config.slots import Path
+from mpm.config.schema_paths import Path
 from mpm.config.variation import Group, Parameter, Variation, at_path, digits, label, rounded
 from mpm.config.vary import Vary
-from mpm.sweep.listed import Alone, Case, Cases, Coordinate, Dimension, Listed
+from mpm.sweep.case_list import Alone, Case, CaseList, Cases, Coordinate, Dimension
 from mpm.sweep.ranges import columns, replaced
 
 MOST_RUNS = 10_000_000  # whatever --max-runs says: planning as many takes ten minutes, and their ids 240 MB
@@ -88,7 +88,7 @@ class Points:
         stop(self.root, self.found)
         if not flats:
             stop(self.root, [Finding(("sweep", "where"), "the condition drops every point", "a condition that some points meet")])
-        listed = Listed(self, np.frombuffer(flats, np.int64), np.frombuffer(ids, f"S{len(ids) // len(flats)}"))
+        listed = CaseList(self, np.frombuffer(flats, np.int64), np.frombuffer(ids, f"S{len(ids) // len(flats)}"))
         return Cases(dims, listed, skipped, tuple(self.derived()))
 
     def index(self, flat: int) -> tuple[int, ...]:

@@ -26,7 +26,7 @@ from mpm.records.provenance import source_hash
 from mpm.sweep.executors import Beat, BrokenWorkers, Done, Event, Lost, Note, Task, Unwritten, event
 from mpm.sweep.local import Local
 from mpm.sweep.remote import prepare, stop, work
-from mpm.sweep.room import resident, size
+from mpm.sweep.resources import resident, size
 from mpm.sweep.store import Refused, Store
 
 LOOK = 1.0  # s between two looks at which workers there are

@@ -18,12 +18,12 @@ from mpm.records.large import Parts, write_sealed
 from mpm.records.netcdf import DamagedFile, Group, seal, summary, to_bytes, write_whole
 from mpm.records.provenance import git_revision, machine, versions
 from mpm.sweep import shards, table
-from mpm.sweep.lines import Lines
 from mpm.sweep.store import BATCH, Store
+from mpm.sweep.summaries import Summaries
 from mpm.sweep.table import Table
 
 
-def collect(store: Store, plan: Any, about: dict, lines: Lines, target: Path | None = None) -> bool:
+def collect(store: Store, plan: Any, about: dict, lines: Summaries, target: Path | None = None) -> bool:
     """Write sweep.nc (or `target`) unless it holds just this already; whether it was written. `about` is experiment.json."""
     target = target or store.dataset
     digest = due(store, about, lines, target)
@@ -42,7 +42,7 @@ def put(target: Path, groups: dict[str, Group], attrs: dict[str, Any], line: dic
         write_whole(target, seal(to_bytes(groups, attrs), line))
 
 
-def due(store: Store, about: dict, lines: Lines, target: Path | None = None) -> str:
+def due(store: Store, about: dict, lines: Summaries, target: Path | None = None) -> str:
     """The fingerprint of the dataset to write; empty where it is there."""
     digest, target = fingerprint(about, lines), target or store.dataset
     try:
@@ -53,7 +53,7 @@ def due(store: Store, about: dict, lines: Lines, target: Path | None = None) -> 
     return "" if there else digest
 
 
-def fingerprint(about: dict, lines: Lines) -> str:
+def fingerprint(about: dict, lines: Summaries) -> str:
     """A hash of all that goes into the dataset."""
     digest = hashlib.sha256(json.dumps(about, sort_keys=True).encode())
     for part in lines.content():
@@ -61,7 +61,7 @@ def fingerprint(about: dict, lines: Lines) -> str:
     return digest.hexdigest()
 
 
-def assemble(store: Store, plan: Any, about: dict, lines: Lines, folder: Path) -> tuple[dict[str, Group], dict[str, Any], list[str]]:
+def assemble(store: Store, plan: Any, about: dict, lines: Summaries, folder: Path) -> tuple[dict[str, Group], dict[str, Any], list[str]]:
     """Groups and attributes of a dataset in `folder`, and the files that hold what does not fit into it, which are there when this returns."""
     order = [run_id for run_id in dict.fromkeys(case.run_id for case in plan.cases) if run_id in lines]
     names = store.places(order)

@@ -20,14 +20,14 @@ from mpm import compiling
 from mpm.records.checkpoint import EVERY
 from mpm.records.provenance import now, source_hash
 from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
+from mpm.sweep.background_collect import Gather
+from mpm.sweep.batch_size import BatchSize
 from mpm.sweep.executors import Beat, Compiling, Done, Event, Executor, Job, Lost, Note, Task
-from mpm.sweep.gather import Gather
-from mpm.sweep.lines import Lines
-from mpm.sweep.pace import Pace
+from mpm.sweep.queue import Due, Points, missing
 from mpm.sweep.report import Reporter, label
-from mpm.sweep.room import ADVICE, Room
+from mpm.sweep.resources import ADVICE, Resources
 from mpm.sweep.store import Store
-from mpm.sweep.tally import Due, Points, missing
+from mpm.sweep.summaries import Summaries
 
 POLL = 0.2  # s
 LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stopped
@@ -75,7 +75,7 @@ class Running:
 class Engine:
     """One pass over the points that are due."""
 
-    def __init__(self, store: Store, points: Points, lines: Lines, options: Options, reporter: Reporter, gather: Gather | None = None):
+    def __init__(self, store: Store, points: Points, lines: Summaries, options: Options, reporter: Reporter, gather: Gather | None = None):
         self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
         self.gather = gather  # collects what is there, now and then
         self.due = Due(points.ids, missing(points, lines, options.rerun))
@@ -84,14 +84,14 @@ class Engine:
         self.alone: set[str] = store.own(self.due)  # also points that died, or were in a batch that died or overran
         self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
-        self.pace, self.names = Pace(), store.batch_names()
+        self.batch_size, self.names = BatchSize(), store.batch_names()
         self.failures = self.ran = self.signals = 0
         self.compiling = 0.0  # s that workers spent on compiling
         self.stopped = self.broken = ""
         self.asked = math.nan  # when all that runs was asked to leave
         self.began = time.monotonic()
         self.executor: Executor | None = None
-        self.room = Room(store.out, options.memory, far=options.scheduler not in (None, "local"))
+        self.resources = Resources(store.out, options.memory, far=options.scheduler not in (None, "local"))
 
     def signal(self, kind: str) -> None:
         """A signal came: "interrupted" or "terminated". Safe to call from a handler."""
@@ -134,14 +134,14 @@ class Engine:
 
     def hand_out(self, executor: Executor) -> bool:
         """Start the next point, or the next few where they are tiny. False where it has to wait for those that run."""
-        size = 1 if self.due.first in self.alone else self.pace.batch(len(self.due), len(self.running) + executor.free)
+        size = 1 if self.due.first in self.alone else self.batch_size.batch(len(self.due), len(self.running) + executor.free)
         if self.options.max_failures is not None:
             size = min(size, self.options.max_failures - self.failures)  # none runs after the last failure that is allowed
         first = self.points.cases[self.due.first].experiment
-        need = self.room.need(first)  # of a batch, the first speaks for all: they are tiny
+        need = self.resources.need(first)  # of a batch, the first speaks for all: they are tiny
         if self.refused(need):
             return True
-        if not self.room.fits(need) or not self.on_disk(size, first):
+        if not self.resources.fits(need) or not self.on_disk(size, first):
             return False
         run_ids = [self.due.take()]
         while len(run_ids) < size and self.due and self.due.first not in self.alone:
@@ -151,26 +151,26 @@ class Engine:
         seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
         task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "", seen)
         self.running[task.id] = Running(task, time.monotonic())
-        self.room.given[task.id] = need
+        self.resources.given[task.id] = need
         executor.submit(task)
         return True
 
     def refused(self, need: int) -> bool:
         """Whether the next point needs more memory than there is; it has its record then."""
-        if refusal := self.room.refusal(need):
+        if refusal := self.resources.refusal(need):
             self.attempts[self.due.first] += 1
             self.record(self.due.take(), FAILED, refusal, MEMORY, ADVICE)
         return bool(refusal)
 
     def any_can_run(self) -> bool:
         """Whether anything is left to start workers for, once the points at the front that need too much memory are refused."""
-        while self.due and not self.stopped and self.refused(self.room.need(self.points.cases[self.due.first].experiment)):
+        while self.due and not self.stopped and self.refused(self.resources.need(self.points.cases[self.due.first].experiment)):
             pass
         return bool(self.due) and not self.stopped
 
     def on_disk(self, size: int, experiment: Any) -> bool:
         """Whether the disk has room for so many points more; where nothing runs that could end, the sweep stops."""
-        why = self.room.short(size + sum(len(at.task.jobs) for at in self.running.values()), experiment)
+        why = self.resources.short(size + sum(len(at.task.jobs) for at in self.running.values()), experiment)
         if why and not self.running:
             self.stop_for_the_disk(why)
         return not why
@@ -191,7 +191,7 @@ class Engine:
         elif (gone := self.running.pop(event.task, None)) is None:
             return  # told twice, as a cluster may
         else:
-            self.room.given.pop(event.task, None)
+            self.resources.given.pop(event.task, None)
             if isinstance(event, Done):
                 self.done(gone, event)
             elif isinstance(event, Lost):
@@ -213,7 +213,7 @@ class Engine:
     def done(self, gone: Running, event: Done) -> None:
         """A task is over: its records count, and what it left is due again, point by point."""
         if event.lines:
-            self.pace.heard(time.monotonic() - gone.start, len(event.lines))
+            self.batch_size.heard(time.monotonic() - gone.start, len(event.lines))
         for line in event.lines:
             self.finish(line)
         if event.left:

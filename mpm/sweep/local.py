@@ -16,7 +16,7 @@ from typing import Any
 from mpm import cache
 from mpm.sweep.executors import BrokenWorkers
 from mpm.sweep.processes import ONE_THREAD, STALL, START_FAILURES
-from mpm.sweep.room import Pulse
+from mpm.sweep.resources import Pulse
 
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep.local import main; main()"
 QUIET = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}

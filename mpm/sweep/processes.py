@@ -20,7 +20,7 @@ from typing import Any
 
 from mpm import cache
 from mpm.sweep.executors import BrokenWorkers, Event, Lost, Note, Task, event
-from mpm.sweep.room import Pulse, resident, size
+from mpm.sweep.resources import Pulse, resident, size
 
 ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")}
 START_FAILURES = 3

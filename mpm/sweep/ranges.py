@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.config.slots import Path
+from mpm.config.schema_paths import Path
 from mpm.config.variation import Group, Parameter
 from mpm.sweep.designs import unit_sample
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from mpm.sweep.lines import Lines
+from mpm.sweep.summaries import Summaries
 
 
 @dataclass
@@ -11,7 +11,7 @@ class Result:
     """What a sweep came to."""
 
     out: Any
-    lines: Lines
+    lines: Summaries
     counts: dict[str, int]
     ran: int
     stopped: str

@@ -18,8 +18,8 @@ from mpm.config.nodes import Origin, wrap
 from mpm.config.problems import ConfigError
 from mpm.config.vary import RESERVED, label
 from mpm.records.variables import VARIABLES, of_probe
+from mpm.sweep.case_list import Alone, Case, Cases, Coordinate, Dimension
 from mpm.sweep.cases import stop
-from mpm.sweep.listed import Alone, Case, Cases, Coordinate, Dimension
 
 OWN = ("method", "path", "place")
 

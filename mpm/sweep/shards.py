@@ -13,9 +13,9 @@ import numpy as np
 from mpm.records.netcdf import Array, DamagedFile, Group, seal, to_bytes, write_whole
 from mpm.records.variables import OK
 from mpm.sweep.coordinates import planned
-from mpm.sweep.over import Over
 from mpm.sweep.store import Store
 from mpm.sweep.table import Table, described, with_axes
+from mpm.sweep.time_columns import TimeColumns
 
 SHARD = 2**28  # bytes of series in a shard
 
@@ -37,7 +37,7 @@ def write(store: Store, plan: Any, about: dict, laid: Table, out: Path) -> list[
     files = []
     for number, begin in enumerate(range(0, laid.shape[0], rows)):
         end = min(begin + rows, laid.shape[0])
-        part = Over((end - begin) * inner)
+        part = TimeColumns((end - begin) * inner)
         places: dict[str, list[int]] = {}
         for place in range(begin * inner, end * inner):
             if run_ids[place]:
@@ -53,7 +53,7 @@ def write(store: Store, plan: Any, about: dict, laid: Table, out: Path) -> list[
     return files
 
 
-def group(laid: Table, part: Over, time: np.ndarray, rows: slice) -> Group:
+def group(laid: Table, part: TimeColumns, time: np.ndarray, rows: slice) -> Group:
     """Coordinates and series of some values along the first dimension."""
     found, axes = Group(), {}
     for name, array in planned(laid.plan).items():

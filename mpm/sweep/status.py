@@ -10,8 +10,8 @@ import numpy as np
 from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan, skipped
 from mpm.sweep.lock import owner, said_owner
+from mpm.sweep.queue import counts, stale, told, warned
 from mpm.sweep.report import label
-from mpm.sweep.tally import counts, stale, told, warned
 from mpm.warned import KINDS
 
 SLOWEST = 5

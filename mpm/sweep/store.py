@@ -23,9 +23,9 @@ from typing import Any
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
 from mpm.records.provenance import versions
 from mpm.records.variables import TIMEOUT
-from mpm.sweep.about import read_about, write_about
-from mpm.sweep.lines import Lines
 from mpm.sweep.lock import Refused
+from mpm.sweep.manifest import read_manifest, write_manifest
+from mpm.sweep.summaries import Summaries
 
 BATCH = "batch-"
 FOLDER = 1000  # batches a folder
@@ -175,9 +175,9 @@ class Store:
         this = secrets.token_hex(4)
         return (f"{BATCH}{number:08d}-{this}" for number in itertools.count(max(used, default=-1) + 1))
 
-    def lines(self, run_ids: Iterable[str]) -> tuple[Lines, list[str]]:
+    def lines(self, run_ids: Iterable[str]) -> tuple[Summaries, list[str]]:
         """Summaries of the points that are there, and the names (of points and batches) of files whose end is damaged."""
-        found, damaged = Lines(run_ids), []
+        found, damaged = Summaries(run_ids), []
         own = self.own(found.ids)
         for name, path in self.batches():
             try:
@@ -216,7 +216,7 @@ class Store:
 
     def experiment(self) -> dict | None:
         """What experiment.json says; None for a new folder."""
-        return read_about(self.out / "experiment.json")
+        return read_manifest(self.out / "experiment.json")
 
     def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep", join: bool = False) -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.
@@ -250,7 +250,7 @@ class Store:
                 return
             if {name: old.get(name) for name in new if name != "versions"} == {name: new[name] for name in new if name != "versions"}:
                 return
-        write_about(self.out / "experiment.json", new)
+        write_manifest(self.out / "experiment.json", new)
 
 
 def point_line(path: Path) -> dict | None:

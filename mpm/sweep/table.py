@@ -13,9 +13,9 @@ from mpm.records.large import Parts
 from mpm.records.netcdf import Array, Group
 from mpm.records.point import Record
 from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, components, describe
-from mpm.sweep.align import places
 from mpm.sweep.coordinates import fixed, planned
-from mpm.sweep.over import Over
+from mpm.sweep.time_axis import places
+from mpm.sweep.time_columns import TimeColumns
 from mpm.warned import KINDS, flags
 
 LIMIT = 2**31  # bytes of fields (as they lie in the points' files) that go into sweep.nc
@@ -54,7 +54,7 @@ class Table:
         self.finals: dict[str, np.ndarray] = {}
         self.model: np.ndarray | None = None  # which model answered each point, where the config left it open
         self.series_names: dict[str, None] = {}
-        self.series_over, self.fields = Over(self.count), Over(self.count)
+        self.series_over, self.fields = TimeColumns(self.count), TimeColumns(self.count)
         self.axes: dict[str, np.ndarray] | None = None
         self.apart = False  # whether the points' grids differ
         self.rows: list[tuple[int, np.ndarray, Any]] = []  # place, times and frames of records that have particles

@@ -14,12 +14,12 @@ import numpy as np
 from mpm.records.frames import Entries
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
 from mpm.sweep.api import collect_last, folder_plan, run_engine, signals
+from mpm.sweep.background_collect import Gather
 from mpm.sweep.engine import Engine, Options
-from mpm.sweep.gather import Gather
 from mpm.sweep.lock import Refused, lock_where_possible
+from mpm.sweep.queue import Due
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import BATCH, Store
-from mpm.sweep.tally import Due
 
 
 @dataclass

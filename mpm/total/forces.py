@@ -8,7 +8,7 @@ average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jian
 
 import math
 
-from mpm.integrate.source import take_up
+from mpm.integrate.body_force import take_up
 from mpm.integrate.strain import HEATED
 from mpm.jit import role
 from mpm.sources import heat, push

@@ -17,7 +17,7 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.heat.exchange import meet
-from mpm.integrate.react import warms
+from mpm.integrate.stress_hencky import warms
 from mpm.jit import kernel
 from mpm.materials.laws import value
 from mpm.total.reference import gradients_at

@@ -16,8 +16,8 @@ import numpy as np
 
 from mpm.basis import stencil
 from mpm.boundary import directions
-from mpm.integrate.load import share
 from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
+from mpm.integrate.traction import share
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
 from mpm.total.forces import act_on, average_volume

@@ -1,16 +1,16 @@
 """Strain and stress of a chunk of particles in the total frame, eight at once where there is more than one direction.
 
 trial   B = F (1 + plastic) F^T - 1 with F = 1 + H, H = sum u grad_X w;  hoop F_33 = 1 + u_r/R;  J = det F;  grown = J/J_before - 1
-then    return map, heating, tau: mpm.integrate.react, as in the updated frame
+then    return map, heating, tau: mpm.integrate.stress_hencky, as in the updated frame
 last    plastic <- F^-1 (1 + B) F^-T - 1 where it flowed;  P = tau F^-T;  the impulse -V0 P on grad_X w, hoop -V0 tau_33/(R F_33) on w
 An elastic body remembers nothing: its stress is a function of u, so steps and paths leave no trace.
 """
 
 import math
 
-from mpm.integrate.react import ACROSS, flows, react_plane, react_volume
-from mpm.integrate.respond import answer
+from mpm.integrate.particle_update import answer
 from mpm.integrate.strain import CODE, GROW, HOOP, JACOBIAN, SWELL, fail, rest
+from mpm.integrate.stress_hencky import ACROSS, flows, stress_plane, stress_volume
 from mpm.isotropic import largest, lowest3, norm, split
 from mpm.jit import kernel, role
 from mpm.lanes import EIGHT, absolute, below, item, least, load8, maximum, minimum, most, peek, poke, splat8, sqrt, store
@@ -193,7 +193,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
     squeeze = plane_strain(space, body, reference, chunk, first, count, dt, report)
     restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
-        react_plane(body.elastic, body, chunk, first, count, dt, report)
+        stress_plane(body.elastic, body, chunk, first, count, dt, report)
         plane_stress(body, reference, chunk, first, count)
     return squeeze
 
@@ -207,7 +207,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
     squeeze = plane_strain(space, body, reference, chunk, first, count, dt, report)
     restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
-        react_plane(body.elastic, body, chunk, first, count, dt, report)
+        stress_plane(body.elastic, body, chunk, first, count, dt, report)
         plane_stress(body, reference, chunk, first, count)
         for p in range(count):
             chunk.a[0, p] = -V0[first + p] * chunk.e[ACROSS, p] / (X[first + p, 0] * (1.0 + chunk.e[HOOP, p]))
@@ -243,7 +243,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
         keep_trial(chunk, count, 6)
     restore(body.locking, chunk, count)
     if report[CODE] == 0.0:
-        react_volume(body.elastic, body, chunk, first, count, dt, report)
+        stress_volume(body.elastic, body, chunk, first, count, dt, report)
         volume_stress(body, reference, chunk, first, count)
     return most(squeeze)
 

@@ -76,7 +76,7 @@ def creep(times, traction, axial, lateral) -> Reading:
 
 def creep_run(run, experiment) -> Reading:
     """From a Run of configs/scenes/dough_creep.yaml: strains of the disc as a whole, by the mean height and radius of its mass."""
-    from mpm.integrate.load import share
+    from mpm.integrate.traction import share
 
     (load,) = experiment.loads
     traction = np.array([load.traction.nominal[-1] * share(t, load.traction.ramp) for t in run.times])

@@ -6,7 +6,7 @@ import pytest
 from mpm.boundary import directions, extents
 from mpm.boundary.blocks import BLOCK, new_blocks, thin
 from mpm.boundary.walls import empty
-from mpm.integrate.touch import SLACK, reaches, touch
+from mpm.integrate.active_nodes import SLACK, reaches, touch
 from mpm.simulation import Clock, advance_block, work_arrays
 from mpm.state import Line, Plane, Volume
 from mpm.transfer import CHUNK

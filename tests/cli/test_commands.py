@@ -201,11 +201,11 @@ def test_a_figure_that_fails_does_not_hide_the_results(mpm, write, monkeypatch):
 def test_a_sweep_that_left_without_a_dataset_names_none(tmp_path):
     from mpm_cli.sweep import summary, words
 
-    from mpm.sweep.lines import Lines
     from mpm.sweep.result import Result
+    from mpm.sweep.summaries import Summaries
 
     counts = {"ok": 300, "pending": 1, "failed": 0, "timeout": 0, "killed": 0, "diverged": 0}
-    left = Result(tmp_path, Lines([]), counts, 300, "interrupted", 130, 9.0, hurried=True)
+    left = Result(tmp_path, Summaries([]), counts, 300, "interrupted", 130, 9.0, hurried=True)
     said = words(left, None, "mpm sweep a.yaml")
     assert "300 ok, 1 pending; 300 run now" in said[0] and f"mpm collect {tmp_path}" in said[1] and said[2].startswith("1 point is left")
     assert summary(left, None)["dataset"] is None and not [line for line in said if line.endswith("sweep.nc")]

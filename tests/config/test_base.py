@@ -11,7 +11,7 @@ from mpm.config.boundary import WALLS
 from mpm.config.materials import ELASTIC, EXPANSION, FLOW, HEAT
 from mpm.config.numerics import RIGID, TRANSFERS
 from mpm.config.output import EXACT
-from mpm.config.slots import Slot, places
+from mpm.config.schema_paths import Slot, places
 from mpm.config.sweep import DESIGNS
 
 MENUS = (SHAPES, WALLS, ELASTIC, EXPANSION, FLOW, HEAT, RIGID, TRANSFERS, EXACT, DESIGNS)

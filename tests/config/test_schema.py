@@ -10,7 +10,7 @@ from mpm.config import schema
 from mpm.config.base import Menu
 from mpm.config.experiment import Experiment
 from mpm.config.nodes import Origin, read
-from mpm.config.slots import Slot, leaves
+from mpm.config.schema_paths import Slot, leaves
 
 SHIPPED = sorted((Path(__file__).parents[2] / "configs").rglob("*.yaml"))
 

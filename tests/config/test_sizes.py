@@ -36,11 +36,11 @@ def test_points_of_a_sweep_too(loaf):
 
 
 def test_a_point_that_needs_more_memory_than_is_free_is_planned_without_being_made(block, tmp_path, monkeypatch):
-    from mpm.sweep import room
-    from mpm.sweep.outlook import outlook, said
+    from mpm.sweep import resources
+    from mpm.sweep.plan_report import outlook, said
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(room, "available", lambda: 1e9)
+    monkeypatch.setattr(resources, "available", lambda: 1e9)
     experiment = load(block, {"grid.cell": "20 um"})
     found = outlook(experiment, None, 1)
     words = said(found)

@@ -42,7 +42,7 @@ def test_what_runs_again(tmp_path, marks, monkeypatch, table):
         go(edited, out)
     affected = go(edited, out, rerun="stale").ran
     back = go(config([0.2, 0.5, 0.8]), out, rerun="stale").ran  # the points of before are there still
-    monkeypatch.setattr("mpm.sweep.tally.source_hash", lambda: "other")
+    monkeypatch.setattr("mpm.sweep.queue.source_hash", lambda: "other")
     kept, stale = go(config([0.2, 0.5, 0.8]), out).ran, go(config([0.2, 0.5, 0.8]), out, rerun="stale").ran
     table("same command again; added axis value; edited parameter", f"{again} points; {added} of 3; {affected} of 3, refused by key without --rerun stale")
     assert (again, added, affected, back, kept, stale) == (0, 1, 3, 0, 0, 3)

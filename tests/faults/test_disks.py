@@ -9,7 +9,7 @@ import pytest
 from scenes import fields, go
 
 from mpm.config import load
-from mpm.sweep import room
+from mpm.sweep import resources
 
 DATA = fields([round(0.1 + 0.05 * k, 2) for k in range(20)])
 
@@ -65,7 +65,7 @@ def fills(mount, whole, monkeypatch, sizes):
     for size in sizes:
         place = mount(size)
         with monkeypatch.context() as patch:
-            patch.setattr(room.Room, "short", lambda *_: "")
+            patch.setattr(resources.Resources, "short", lambda *_: "")
             code, said = run(DATA, place / "out")
         kinds.add(code)
         mount(place, "size=100m")

@@ -22,9 +22,9 @@ import sys
 sys.path[:0] = {paths!r}
 from pathlib import Path
 from scenes import go
-from mpm.sweep import gather
+from mpm.sweep import background_collect
 if {beside!r}:  # datasets all the time, in a process of their own
-    gather.SMALL, gather.EVERY, gather.SHARE = 0, 0.0, 0
+    background_collect.SMALL, background_collect.EVERY, background_collect.SHARE = 0, 0.0, 0
 print(go({config!r}, Path({out!r}), jobs=2).exit_code)
 """
 

@@ -43,10 +43,10 @@ def test_moving_bodies(core, transfer):
 
 @pytest.mark.parametrize("shared", [10**9, 1], ids=["alone", "in slabs"])
 def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
-    from mpm.integrate import order
+    from mpm.integrate import sorting
 
     for name, value in {"LEAST": 1, "MIXED": 0.0, "FAR": 0, "EVERY": 2, "SHARED": shared, "FULL": 1}.items():
-        monkeypatch.setattr(order, name, value)
+        monkeypatch.setattr(sorting, name, value)
     air = [{"of": "body", "convection": {"beta": 1.0, "outside": 300}}]
     body = core.config(2)["bodies"]["body"] | {"velocity": [0.9, 0.3]}
     looks = LOOKS | {"probes": {"p": [0.7, 0.7]}}

@@ -12,9 +12,9 @@ import pytest
 
 from mpm.config import ConfigError, load
 from mpm.records.netcdf import Array, Group, seal, to_bytes, unseal
-from mpm.sweep.about import read_about
 from mpm.sweep.api import execute, tree_of
 from mpm.sweep.engine import Options
+from mpm.sweep.manifest import read_manifest
 from mpm.text import joined, storable, visible
 
 REFUSED = ["\x00", "a\x00b", "\ud83c", "\udf5e\ud83c"]
@@ -103,7 +103,7 @@ def test_configs_datasets_and_their_folder(tmp_path, monkeypatch):
     for place, text in enumerate(KEPT):
         experiment = loaded(text)
         result = execute(experiment, tmp_path / f"{place}", Options(jobs=0, runner="fake_runner"))
-        assert result.exit_code == 0 and read_about(tmp_path / f"{place}" / "experiment.json")["title"] == experiment.title == joined(text)
+        assert result.exit_code == 0 and read_manifest(tmp_path / f"{place}" / "experiment.json")["title"] == experiment.title == joined(text)
         root = tree_of(tmp_path / f"{place}" / "sweep.nc")
         assert root.attrs["title"] == (experiment.title or "experiment") and json.loads(root.attrs["config_resolved"])["title"] == experiment.title
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.integrate.pieces import place
+from mpm.integrate.surface_flux import place
 from mpm.scene.build import build
 from mpm.verification import exact_solution
 

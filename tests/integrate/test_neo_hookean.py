@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.integrate.react import ACROSS, react_plane, react_volume
 from mpm.integrate.strain import JACOBIAN, REPORT, STRAIN
+from mpm.integrate.stress_hencky import ACROSS, stress_plane, stress_volume
 from mpm.materials import NeoHookean, energy, moduli, stress
 from mpm.state import Body, Isothermal, NoExchange, NoExpansion, NoHeating, Particles
 from mpm.transfer import new_chunk
@@ -28,7 +28,7 @@ def stretched(D):
     return Body(particles, Isothermal(300.0), NoExchange(), LAW, None, NoExpansion(), NoHeating()), chunk, b
 
 
-@pytest.mark.parametrize("D, react", [(2, react_plane), (3, react_volume)])
+@pytest.mark.parametrize("D, react", [(2, stress_plane), (3, stress_volume)])
 def test_stress_of_a_chunk_is_that_of_its_principal_stretches(D, react):
     body, chunk, b = stretched(D)
     report = np.zeros(REPORT)
@@ -51,7 +51,7 @@ def test_the_step_limit_knows_a_bar_that_thins_as_it_stretches():
     chunk.e[:6, :N], chunk.e[JACOBIAN, :N] = 0.0, 1.0
     chunk.e[:3, 4] = 3.0, -0.5, -0.5
     report = np.zeros(REPORT)
-    react_volume(LAW, body, chunk, 0, N, 0.1, report)
+    stress_volume(LAW, body, chunk, 0, N, 0.1, report)
     assert 1 - report[STRAIN] == pytest.approx((LAW.lam + 2 * LAW.mu * 4) / (LAW.lam + 2 * LAW.mu))
 
 

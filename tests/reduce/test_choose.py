@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.reduce.gap import gap
+from mpm.reduce.difference import gap
 from mpm.reduce.offers import asked, driving
 
 

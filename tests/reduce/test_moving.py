@@ -7,7 +7,7 @@ import pytest
 
 import mpm
 from mpm.reduce.choose import judged
-from mpm.reduce.gap import gap
+from mpm.reduce.difference import gap
 from mpm.reduce.moving import touches
 from mpm.reduce.offers import Offer, asked, driving
 from mpm.runner import run_named

@@ -90,7 +90,7 @@ def test_the_estimate_of_unevenness_is_above_what_a_run_shows(beta):
 
 
 def test_plan_tells_the_groups():
-    from mpm.sweep.outlook import outlook, said
+    from mpm.sweep.plan_report import outlook, said
 
     told = outlook(mpm.load(SLAB), None, 1)
     assert [group["name"] for group in told["groups"]] == ["Biot", "Fourier"]

@@ -45,7 +45,7 @@ def test_what_was_measured_is_kept(tmp_path, monkeypatch):
 def test_the_smaller_model_answers_within_the_tolerance(path):
     """What `python -m mpm.study.reduction` measures, without its rounds of timing: something is dropped, the answer stays within 1 %, and it is foretold."""
     import mpm
-    from mpm.reduce.gap import gap
+    from mpm.reduce.difference import gap
     from mpm.reduce.offers import asked, driving
 
     full = mpm.load(path, {"model": "full"})

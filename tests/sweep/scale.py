@@ -20,11 +20,11 @@ from pathlib import Path
 import numpy as np
 
 from mpm.config import load
-from mpm.sweep import api, gather
+from mpm.sweep import api, background_collect
 from mpm.sweep.cases import plan
 from mpm.sweep.engine import Options
 from mpm.sweep.report import Reporter
-from mpm.sweep.room import resident
+from mpm.sweep.resources import resident
 
 ROOT = Path(__file__).parents[2]
 COLLECT = """
@@ -69,7 +69,7 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
     found |= {"points": len(planned), "plan_s": time.perf_counter() - since}
     some = [case.experiment for case in planned.cases[:: max(1, points // 300)]]
     del planned
-    spent, last = [], gather.Gather.last
+    spent, last = [], background_collect.Gather.last
 
     def timed(self, stop):
         began = time.perf_counter()
@@ -77,7 +77,7 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
         spent.append(time.perf_counter() - began)
         return written
 
-    gather.Gather.last = timed
+    background_collect.Gather.last = timed
     out, clock = Path(tempfile.mkdtemp(prefix="scale-", dir=".")), Clock()
     try:
         result = api.execute(experiment, out, Options(jobs=jobs, scheduler=address, runner=runner), clock, 10**7)
@@ -107,7 +107,7 @@ def measure(points, jobs=1, address=None, runner="mpm.runner", say=lambda *_: No
         assert api.execute(experiment, out, Options(jobs=jobs, runner=runner), None, 10**7).ran == 0
         found["again_s"] = time.perf_counter() - since
     finally:
-        gather.Gather.last = last
+        background_collect.Gather.last = last
         shutil.rmtree(out)
     return found
 

@@ -5,7 +5,7 @@ import pytest
 
 import mpm
 from mpm.sweep.api import default_out
-from mpm.sweep.tally import EXIT, exit_code
+from mpm.sweep.queue import EXIT, exit_code
 
 
 def test_python_gives_the_same_as_the_shell(config, tmp_path, monkeypatch):

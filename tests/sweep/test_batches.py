@@ -6,11 +6,11 @@ import pytest
 
 from mpm.config import load
 from mpm.records.point import Record
-from mpm.sweep import pace
+from mpm.sweep import batch_size
 from mpm.sweep.api import execute, tree_of
+from mpm.sweep.batch_size import MOST, BatchSize
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
-from mpm.sweep.pace import MOST, Pace
 from mpm.sweep.store import Store
 
 TINY = [round(0.01 * k, 2) for k in range(1, 201)]
@@ -47,16 +47,16 @@ def test_a_damaged_batch_is_set_aside_and_its_points_are_due(tmp_path):
 
 
 def test_rerun_points_with_files_of_their_own_stay_there(config, tmp_path, monkeypatch):
-    monkeypatch.setattr(pace, "BATCH", 0.0)
+    monkeypatch.setattr(batch_size, "BATCH", 0.0)
     go(config(TINY[:20]), tmp_path)
-    monkeypatch.setattr(pace, "BATCH", 1.0)
+    monkeypatch.setattr(batch_size, "BATCH", 1.0)
     assert go(config(TINY[:40]), tmp_path, rerun="all").ran == 40
     assert len(list(tmp_path.glob("points/*/*.nc"))) >= 20 and list(tmp_path.glob("batches/*/*.nc"))
     assert go(config(TINY[:40]), tmp_path).ran == 0
 
 
 def test_sizes_follow_the_pace():
-    now = Pace()
+    now = BatchSize()
     assert now.batch(1000, 2) == 1
     now.heard(0.002, 1)
     assert now.batch(1000, 2) == 4  # grows by four at most
@@ -73,7 +73,7 @@ def test_tiny_points_share_files_and_give_the_same_dataset(config, tmp_path, mar
     assert go(whole, tmp_path / "batches").ran == 202
     assert len(list((tmp_path / "batches").glob("batches/*/*.nc"))) > 1 and len(list((tmp_path / "batches").glob("*/*/*.nc"))) < 40
     assert len(marks()) == 202 and go(whole, tmp_path / "batches").ran == 0
-    monkeypatch.setattr(pace, "BATCH", 0.0)
+    monkeypatch.setattr(batch_size, "BATCH", 0.0)
     go(whole, tmp_path / "alone")
     assert len(list((tmp_path / "alone").glob("points/*/*.nc"))) == 202
     assert compare(tmp_path / "batches", tmp_path / "alone") == []
@@ -99,9 +99,9 @@ def test_a_material_point_gives_the_same_bits_alone_and_in_a_batch(tmp_path, mon
     experiment = load("configs/scenes/dough_rheometer.yaml", {"output.every": 1.0})
     real, calls = __import__("mpm.runner").runner.run_points, []
     monkeypatch.setattr("mpm.runner.run_points", lambda experiments: calls.append(len(experiments)) or real(experiments))
-    monkeypatch.setattr(Pace, "batch", lambda *_: 9)
+    monkeypatch.setattr(BatchSize, "batch", lambda *_: 9)
     execute(experiment, tmp_path / "together", Options(jobs=0))
-    monkeypatch.setattr(Pace, "batch", lambda *_: 1)
+    monkeypatch.setattr(BatchSize, "batch", lambda *_: 1)
     execute(experiment, tmp_path / "alone", Options(jobs=0))
     assert calls == [9] and compare(tmp_path / "together", tmp_path / "alone") == []
     assert not math.isnan(tree_of(tmp_path / "alone" / "sweep.nc").stress_zz.values.sum())

@@ -77,7 +77,7 @@ def test_an_edited_parameter_is_refused_by_key_and_runs_when_told(config, tmp_pa
 def test_other_source_is_stale(config, tmp_path, monkeypatch):
     go(config([0.2, 0.5]), tmp_path / "out")
     assert go(config([0.2, 0.5]), tmp_path / "out", rerun="stale").ran == 0
-    monkeypatch.setattr("mpm.sweep.tally.source_hash", lambda: "other")
+    monkeypatch.setattr("mpm.sweep.queue.source_hash", lambda: "other")
     ears = Ears()
     assert execute(load(config([0.2, 0.5, 0.7])), tmp_path / "out", Options(jobs=0, runner="fake_runner"), ears).ran == 1
     assert ears.told[0] == "2 of the points that are there were made by other source; --rerun stale runs them again"
@@ -277,7 +277,7 @@ def test_ctrl_c_leaves_checkpoints_and_the_same_command_goes_on_from_them(config
 
 
 def test_a_dataset_of_what_is_there_while_running(config, tmp_path, monkeypatch):
-    monkeypatch.setattr("mpm.sweep.gather.EVERY", 0.0)
+    monkeypatch.setattr("mpm.sweep.background_collect.EVERY", 0.0)
     seen = []
 
     class Eyes(Reporter):

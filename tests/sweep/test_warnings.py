@@ -4,12 +4,12 @@ import fake_runner as fake
 import numpy as np
 
 from mpm.config import load
-from mpm.sweep import engine, pace
+from mpm.sweep import batch_size, engine
 from mpm.sweep.api import execute, folder_plan, run_one, tree_of
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
+from mpm.sweep.queue import told, warned
 from mpm.sweep.status import said, status
-from mpm.sweep.tally import told, warned
 from mpm.warned import KINDS, flags, kinds
 
 TWO = {"points": 1, "volume": 1, "temperature": 1}
@@ -49,7 +49,7 @@ def test_they_are_counted_from_disk_and_named_by_status(config, tmp_path):
 
 def test_batches_and_dask_keep_them(config, tmp_path, monkeypatch):
     points = config([fake.WARNS, *np.round(0.1 + 0.01 * np.arange(30), 2).tolist()])
-    monkeypatch.setattr(pace, "BATCH", 1.0)
+    monkeypatch.setattr(batch_size, "BATCH", 1.0)
     go(points, tmp_path / "own")
     assert list((tmp_path / "own").glob("batches/*/*.nc"))
     result = go(points, tmp_path / "dask", scheduler="local", jobs=1)

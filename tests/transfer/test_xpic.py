@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm.integrate.sharpen import sharpened
+from mpm.integrate.xpic import sharpened
 
 CELLS, H = 32, 1 / 32
 

@@ -1,0 +1,246 @@
+"""The mechanical step of a large scene in slabs, by threads: the same bits for any number of them.
+
+The nodes are cut across one axis into slabs, each wider than a stencil reaches; the particles of a slab lie together (sorting.py). What a slab scatters
+reaches into the slabs beside it and no farther, so even slabs never meet, and an odd one waits for the two beside it: every node adds up the even slab, then
+the odd one, each in the order of its particles, whichever thread does what and when. Gathers only read. Reports are put together in the order of the slabs.
+
+Particles drift between sorts. A slab may touch nodes up to half way to where the next slab but one reached in the step before; a chunk that would touch more is
+kept in its particles, and scattered after all slabs, by one thread: `late`. So no drift is too fast to be right; a block with late chunks is sorted anew.
+Nodal passes of schemes that want them (XPIC, F-bar, heating on the grid) and heat steps are one thread's.
+"""
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from numba import literal_unroll
+
+from mpm.basis import stencil
+from mpm.boundary import extents
+from mpm.boundary.blocks import thin
+from mpm.boundary.walls import empty
+from mpm.integrate.active_nodes import SLACK, reaches, touch
+from mpm.integrate.dither import dither
+from mpm.integrate.explicit import clean, on_nodes, step_chunk
+from mpm.integrate.fbar import any_averages
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
+from mpm.jit import kernel
+from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
+from mpm.transfer import CHUNK, deliver, new_chunk, spread, uses_basis_gradient, wants_change
+
+STILL, LATE = 0, 1
+
+
+class Slabs(NamedTuple):
+    """What the threads share. M slabs, B bodies."""
+
+    axis: int
+    starts: np.ndarray  # (B, M + 1) first particle of each slab
+    low: np.ndarray  # (M,) nodes that a slab may touch: low <= node < high along the axis
+    high: np.ndarray  # (M,)
+    late: np.ndarray  # (B, N) whether the chunk that begins at a particle is to be scattered after all slabs
+    strays: np.ndarray  # (M,) how many such chunks a slab has
+    boxes: np.ndarray  # (M + 1, 3, 2) nodes touched; the last: by late chunks
+    blocks: np.ndarray  # (2, marks) of both buffers (mpm.boundary.blocks)
+    reports: np.ndarray  # (M + 1, B, REPORT)
+
+
+class Moment(NamedTuple):
+    """Where in a block of steps."""
+
+    now: int  # buffer to gather from
+    dt: float
+    step: int
+    begun: int  # steps of the run before the block
+    opening: bool
+    last: bool
+    late: bool  # only the late chunks
+    sparse: bool  # whether chunks mark what they touch
+
+
+@kernel
+def pass_slabs(space, gradient, scheme, bodies, slabs, which, nodes, force, moment):
+    """Gather from buffer `now`, respond, and scatter on to the other, for the slabs `which`, one after another."""
+    chunk = new_chunk(bodies[0].particles.x.shape[1], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
+    change = np.zeros_like(chunk.v)
+    for s in which:
+        if not moment.late:
+            empty(extents(space), slabs.boxes[s])
+            slabs.strays[s] = 0
+        pass_bodies(space, gradient, scheme, bodies, chunk, change, slabs, s, nodes, force, moment)
+
+
+@kernel
+def pass_bodies(space, gradient, scheme, bodies, chunk, change, slabs, s, nodes, force, moment):
+    """One slab."""
+    b = 0
+    for body in literal_unroll(bodies):
+        pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, force, moment)
+        b += 1
+
+
+@kernel
+def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, force, moment):
+    """One body's part of a slab."""
+    row = slabs.strays.shape[0] if moment.late else s
+    box, report, there, pushed = slabs.boxes[row], slabs.reports[row, b], nodes[1 - moment.now], force[1 - moment.now]
+    x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
+    starts = moment.opening or moment.late
+    reach, shake = reaches(space, 0 if moment.last else end - begin), dither(space, x, moment.begun + moment.step)
+    for first in range(begin, end, CHUNK):
+        if moment.late and late[first] == STILL:
+            continue
+        count = min(CHUNK, end - first)
+        if not step_chunk(space, gradient, scheme, body, chunk, change, nodes[moment.now], force[moment.now], first, count, moment.dt, moment.step, shake,
+                          starts, moment.last, report):  # fmt: skip
+            return
+        if moment.last:
+            continue
+        if moment.late or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
+            late[first] = STILL
+            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK])
+        else:
+            deliver(body.particles, first, chunk, count)
+            late[first] = LATE
+            slabs.strays[s] += 1
+    touch(space, x, begin, end, reach, box, slabs.blocks[1 - moment.now], moment.sparse)
+
+
+@kernel
+def within(space, chunk, axis, count, low, high):
+    """Whether the particles of a chunk touch nodes low <= node < high only."""
+    row = axis * chunk.place.shape[1]
+    leftmost = rightmost = load8(chunk.place, row)
+    for p in range(EIGHT, count, EIGHT):
+        here = load8(chunk.place, row + p)
+        leftmost, rightmost = minimum(here, leftmost), maximum(here, rightmost)
+    inverse = 1.0 / space.h
+    first = stencil(space.basis, least(leftmost) * inverse - SLACK)[0]
+    last, w, _, _, _ = stencil(space.basis, most(rightmost) * inverse + SLACK)
+    return low <= first and last + len(w) <= high
+
+
+@kernel
+def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports):
+    """What is done to the nodes between scatter and gather."""
+    chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
+    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports)
+
+
+def advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, begun, reports) -> bool:
+    """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
+    space, bodies, starts, axis = scene.space, scene.bodies, scene.order.starts, scene.order.axis
+    M = starts.shape[1] - 1
+    largest = max(len(body.particles.m) for body in bodies)
+    slabs = Slabs(
+        axis, starts, np.zeros(M, np.int64), np.zeros(M, np.int64), np.zeros((len(bodies), largest), np.uint8), np.zeros(M, np.int64),
+        np.zeros((M + 1, 3, 2), np.int64), blocks, np.repeat(reports[None], M + 1, axis=0),
+    )  # fmt: skip
+    reach = scene.order.reach
+    order, strayed, sparse = wave(M), False, True
+    for box in boxes:
+        empty(extents(space), box)
+    with Crew(min(scene.threads, M)) as crew:
+        for step in range(-1, steps):
+            opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
+            if not opening:
+                around = scene.walls, scene.gravity, dt, kick if step == 0 else dt
+                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, slabs.reports[M])
+            share_out(reach, slabs)
+            moment = Moment(now, kick if opening else dt, step, begun, opening, last, False, sparse)
+            crew.work(order, lambda which, m=moment: pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, which, nodes, force, m))
+            empty(extents(space), slabs.boxes[M])
+            if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():
+                strayed, moment = True, moment._replace(late=True)
+                pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, np.flatnonzero(slabs.strays), nodes, force, moment)
+            if (slabs.reports[..., CODE] != 0).any():
+                break
+            if not opening:
+                clean(space, scene.scheme, nodes[now], force[now], boxes[now], blocks[now])
+            if not last:
+                boxes[1 - now, :, 0], boxes[1 - now, :, 1] = slabs.boxes[:, :, 0].min(axis=0), slabs.boxes[:, :, 1].max(axis=0)
+                used = slabs.boxes[:M, axis]
+                reach[used[:, 1] > used[:, 0]] = used[used[:, 1] > used[:, 0]]
+            if opening:
+                sparse = bool(thin(extents(space), boxes[1 - now], blocks[1 - now]))
+    for b, report in enumerate(reports):
+        together(report, slabs.reports[:, b])
+    return strayed
+
+
+def share_out(reach: np.ndarray, slabs: Slabs) -> None:
+    """What each slab may touch: half way to the reach of the next slab but one."""
+    between = np.maximum.accumulate((reach[:-2, 1] + reach[2:, 0]) // 2)  # rising: the next slab but two is out of reach too
+    slabs.low[:2], slabs.high[-2:] = -(10**9), 10**9
+    slabs.low[2:], slabs.high[:-2] = between, between
+
+
+def together(report: np.ndarray, found: np.ndarray) -> None:
+    """The report of a body from those of the slabs (M + 1, REPORT), in their order; the first failure."""
+    failed = np.flatnonzero(found[:, CODE])
+    if len(failed):
+        report[[CODE, PARTICLE, STEP]] = found[failed[0]][[CODE, PARTICLE, STEP]]
+    for place in (SPEED, RATE, SWELL):
+        report[place] = found[:, place].max()
+    report[STRAIN] = found[:, STRAIN].min()
+    for place in (HEATED, DISSIPATED, WORKED, SWELLED):
+        report[place] = sum(found[:, place].tolist())
+
+
+def wave(M: int) -> np.ndarray:
+    """Slabs in an order in which an odd one comes soon after the two beside it: 0 2 1 4 3 ..."""
+    return np.array(sorted(range(M), key=lambda s: s + 1.5 * (s % 2)))
+
+
+class Crew:
+    """Threads that work on slabs together."""
+
+    def __init__(self, threads: int):
+        self.threads = threads
+        self.pool = ThreadPoolExecutor(threads - 1) if threads > 1 else None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.pool is not None:
+            self.pool.shutdown()
+
+    def work(self, order: np.ndarray, call) -> None:
+        """call(array of slabs) for all of them, an odd one after the two beside it; alone in that order, in company as soon as they may."""
+        if self.pool is None:
+            call(order)
+            return
+        todo, done, changed = order.tolist(), set(), threading.Condition()
+
+        def ready(s: int) -> bool:
+            return s % 2 == 0 or {t for t in (s - 1, s + 1) if t < len(order)} <= done
+
+        def take() -> int | None:
+            with changed:
+                while todo:
+                    s = next((s for s in todo if ready(s)), None)
+                    if s is not None:
+                        todo.remove(s)
+                        return s
+                    changed.wait()
+            return None
+
+        def run() -> None:
+            while (s := take()) is not None:
+                try:
+                    call(np.array([s]))
+                except BaseException:
+                    with changed:
+                        todo.clear()
+                        changed.notify_all()
+                    raise
+                with changed:
+                    done.add(s)
+                    changed.notify_all()
+
+        company = [self.pool.submit(run) for _ in range(self.threads - 1)]
+        run()
+        for one in company:
+            one.result()

@@ -1,0 +1,43 @@
+"""experiment.json: what a sweep's folder holds, as plain JSON whose last entry is the SHA-256 of all before it."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+from mpm.records.netcdf import write_whole
+from mpm.sweep.lock import Refused
+
+MARK = b',\n "sha256": "'
+
+
+def write_manifest(path: Path, about: dict[str, Any]) -> None:
+    """Write it, whole."""
+    head = json.dumps(about, indent=1, ensure_ascii=False).encode(errors="backslashreplace").removesuffix(b"\n}")
+    write_whole(path, head + closing(head))
+
+
+def closing(head: bytes) -> bytes:
+    """The end of the file."""
+    return MARK + hashlib.sha256(head).hexdigest().encode() + b'"\n}'
+
+
+def read_manifest(path: Path) -> dict | None:
+    """What it says; None where there is none. Refused where a byte is not as it was written (format 1 had no checksum)."""
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return None
+    try:
+        found = json.loads(data)
+    except ValueError as error:
+        raise damaged(path, str(error)) from None
+    head, mark, _ = data.rpartition(MARK)
+    if not isinstance(found, dict) or (found.get("format") != 1 and data != head + closing(head)) or (found.get("format") == 1 and mark):
+        raise damaged(path, "it does not match its checksum")
+    return {name: value for name, value in found.items() if name != "sha256"}
+
+
+def damaged(path: Path, why: str) -> Refused:
+    """The refusal."""
+    return Refused(f"{path} is damaged ({why}); move it away, the points beside it are kept and found again")
