@@ -132,12 +132,18 @@ def complete(experiment, run: Run) -> Run:
 
 
 def misfits(experiment, run: Run) -> dict[str, float]:
-    """Root-mean-square difference between each probe and what was measured there, at the measured times that the run reached."""
+    """Root-mean-square difference between the run and each measured curve, at the measured times that it reached; NaN where it reached none."""
+    from mpm.config.measured import target
+
     found = {}
-    for probe, curve in experiment.output.measured.items():
-        samples = np.array([pair for pair in curve.samples if pair[0] <= run.times[-1] * (1 + 1e-9)]).reshape(-1, 2)
-        difference = np.interp(samples[:, 0], run.times, run.series[f"temperature_{probe}"]) - samples[:, 1]
-        found[f"misfit_{probe}"] = float(np.sqrt(np.mean(difference**2))) if len(samples) else float("nan")
+    for name, curve in experiment.output.measured.items():
+        variable = target(experiment, name, curve)[0]
+        if curve.equals is not None:
+            found[f"misfit_{name}"] = abs(run.finals.get(variable, np.nan) - curve.equals)
+            continue
+        samples = np.array([row[:2] for row in curve.samples if row[0] <= run.times[-1] * (1 + 1e-9)]).reshape(-1, 2)
+        difference = np.interp(samples[:, 0], run.times, run.series[variable]) - samples[:, 1] if variable in run.series else np.full(len(samples), np.nan)
+        found[f"misfit_{name}"] = float(np.sqrt(np.mean(difference**2))) if len(samples) else float("nan")
     return found
 
 

@@ -1,128 +1,123 @@
-"""Measured curves: a CSV beside the config, read when the config is, so that a point carries its data and no path.
+"""Measured curves: a CSV beside the config, read when the config is (config.curves), so that a point carries its data and no path.
 
-Columns are named with their units: `minute`, `second`, `hour`; temperatures end in `_degC` or `_K`. Lines that start with # are comments.
-Rows may stand in any order of time; they are kept by rising time. Everything else that is not plain is refused with its line.
+A curve belongs to a probe of its name, or to the observable that `of` names. Its column's unit stands in the header (`centre_degC`, `Height [mm]`), or is
+`unit`. A single number is a curve too: `{of: radius.99, samples: [[3 s, 62.8 mm]]}`, or `equals` for what is one number a run (`time_to.centre.95_degC`).
 """
 
-import csv
-import math
-import os
-import stat
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+from pydantic import model_validator
 
 from mpm.config.base import Model, doc
+from mpm.config.curves import Unreadable, read
 from mpm.config.explain import Finding
-from mpm.config.problems import brief, listed
-
-SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0}
-KELVIN = {"_degC": 273.15, "_K": 0.0}
-MOST_BYTES, MOST_ROWS = 64 * 2**20, 100_000  # of a file; of its curve, which every point carries
+from mpm.config.problems import brief, near
+from mpm.config.quantities import Number, Positive, Quantity
 
 
 class Measured(Model):
-    """A measured temperature at a probe."""
+    """A measured curve."""
 
-    file: str = doc(description="CSV file, relative to the config")
-    time: str = doc("second", description="column of the time: second, minute or hour")
-    value: str = doc(description="column of the temperature; its name ends in _degC or _K")
-    samples: tuple[tuple[float, float], ...] = doc((), description="what the file holds: (second, kelvin); filled in when the config is read")
+    file: str = doc("", description="CSV file, relative to the config")
+    of: str | None = doc(None, description="the observable or probe that was measured; the probe of the curve's name unless given")
+    time: str = doc("", description="column of the time; its name tells the unit, clock times count from the first row")
+    value: str = doc("", description="column of the value; its name tells the unit, as height_mm, T [°C], oven_degF")
+    unit: str = doc("", description="unit of the column, where its name tells none")
+    start: float | str | None = doc(None, description="what the time column shows as the run begins; rows before are left out")
+    sigma: float | str | None = doc(None, description="standard error of the values: a number, text with a unit, or the name of a column")
+    weight: Positive = doc(1.0, description="how much the curve counts in a fit; its squares are multiplied by this")
+    equals: float | str | None = doc(None, description="the measured value of an observable that is one number a run, as time_to.centre.95_degC")
+    samples: tuple[tuple[Any, ...], ...] = doc((), description="[time, value] or [time, value, sigma]; filled in from the file when the config is read")
+    units: str = doc("", description="SI unit of the samples; filled in when the config is read")
+
+    @model_validator(mode="after")
+    def plain(self) -> "Measured":
+        """Samples that are SI numbers already, as floats."""
+        if self.units:
+            self.__dict__["samples"] = tuple(tuple(float(item) for item in row) for row in self.samples)
+            for name in ("equals", "sigma"):
+                value = getattr(self, name)
+                if isinstance(value, int) and not isinstance(value, bool):
+                    self.__dict__[name] = float(value)
+        return self
 
 
-class Unreadable(ValueError):
-    """What is wrong with a file, and what would be right. `column`: the key of the config that names it, where it is a column's name that is wrong."""
+def target(experiment: Any, name: str, curve: Measured) -> tuple[str, str] | None:
+    """(name in the dataset, SI unit) of what a curve measures; None where the config records no such thing."""
+    from mpm.records.variables import dataset_name, describe
 
-    def __init__(self, line: int, message: str, allowed="", column: str = "file"):
-        super().__init__(f"line {line}: {message}" if line else message)
-        self.line, self.message, self.allowed, self.column = line, message, allowed, column
+    of, output = curve.of or name, experiment.output
+    if of in output.probes and of not in output.observables:
+        return f"temperature_{of}", "K"
+    if of not in output.observables:
+        return None
+    return dataset_name(of), describe(dataset_name(of), experiment.grid.dimension, output.probes).units
 
 
-def embed(experiment, folder: Path) -> Iterator[Finding]:
+def embed(experiment: Any, folder: Path) -> Iterator[Finding]:
     """Fill in `samples` from the files, which are relative to `folder`; yields what is wrong with them."""
-    for probe, curve in experiment.output.measured.items():
-        place = ("output", "measured", probe)
-        if probe not in experiment.output.probes:
-            yield Finding(place, f"there is no probe {probe!r}", list(experiment.output.probes), on_key=True)
-        elif not curve.samples:
+    for name, curve in experiment.output.measured.items():
+        place = ("output", "measured", name)
+        found = target(experiment, name, curve)
+        if found is None:
+            known = [*experiment.output.probes, *experiment.output.observables]
+            said = f"there is no probe {name!r}" if curve.of is None else f"{curve.of!r} is not recorded: it is no probe and not among output.observables"
+            yield Finding(place if curve.of is None else (*place, "of"), said, known, near(curve.of or name, known), on_key=curve.of is None)
+            continue
+        ways = [key for key in ("file", "samples", "equals") if key in curve.model_fields_set and getattr(curve, key) not in ("", (), None)]
+        if not curve.units and len(ways) != 1:
+            said = f"{' and '.join(ways)}: the data is here twice" if ways else "where is the data?"
+            yield Finding(place, said, ["file", "samples", "equals"], on_key=True)
+            continue
+        if not curve.units:
             try:
-                samples = tuple(read(folder / curve.file, curve.time, curve.value))
+                update = data(curve, folder, found[1])
             except OSError as error:
                 yield Finding((*place, "file"), f"cannot read {curve.file!r}: {error.strerror}", "a CSV file beside the config")
             except Unreadable as error:
-                where = f"{curve.file}:{error.line}" if error.line else curve.file
+                where = f"{curve.file}:{error.line}: " if error.line else f"{curve.file}: " if error.column == "file" and curve.file else ""
                 key = error.column if error.column == "file" or error.column in curve.model_fields_set else "file"
-                yield Finding((*place, key), f"{where}: {error.message}", error.allowed)
+                yield Finding((*place, key), f"{where}{error.message}", error.allowed)
             except ValueError as error:  # a name that no file can have
                 yield Finding((*place, "file"), f"cannot read {brief(curve.file)}: {error}", "a CSV file beside the config")
             else:
-                experiment.output.measured[probe] = curve.model_copy(update={"samples": samples, "file": Path(curve.file).name})
+                experiment.output.measured[name] = curve.model_copy(update=update)
 
 
-def content(path: Path) -> str:
-    """The text of a plain file of at most MOST_BYTES. Never waits: a pipe and a device are not opened for reading."""
-    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
-        found = os.fstat(file.fileno())
-        if not stat.S_ISREG(found.st_mode):
-            raise Unreadable(0, "this is no plain file", "a CSV file with a header and numbers, not a pipe, device or folder")
-        raw = file.read(MOST_BYTES + 1) if found.st_size <= MOST_BYTES else b""
-    if (not raw and found.st_size) or len(raw) > MOST_BYTES:
-        raise Unreadable(0, f"the file has {max(found.st_size, len(raw)) / 2**20:.0f} MiB", f"at most {MOST_BYTES // 2**20} MiB")
+def data(curve: Measured, folder: Path, units: str) -> dict[str, Any]:
+    """What is filled in: numbers in SI."""
+    made: dict[str, Any] = {"units": units, "file": Path(curve.file).name}
+    sigma = curve.sigma
+    if sigma is not None and not (isinstance(sigma, str) and sigma[:1].isalpha()):
+        made["sigma"] = sigma = number(sigma, units, "sigma", "sigma", difference=True)
+        if not sigma > 0:
+            raise Unreadable(0, "sigma must be above 0", "a standard error", "sigma")
+    if curve.equals is not None:
+        return made | {"equals": number(curve.equals, units, "value", "equals")}
+    if curve.file:
+        column = sigma if isinstance(sigma, str) else ""
+        made["samples"] = tuple(read(folder / curve.file, curve.time, curve.value, units, curve.unit, curve.start, column))
+        return made | ({"sigma": None} if column else {})
+    rows = []
+    for row in curve.samples:
+        if len(row) not in (2, 3) or len(row) != len(curve.samples[0]):
+            raise Unreadable(0, "each sample is [time, value] or [time, value, sigma], all alike", "[[3 s, 62.8 mm], ...]", "samples")
+        values = [number(row[0], "s", "time", "samples"), number(row[1], units, "value", "samples")]
+        rows.append((*values, *(number(item, units, "sigma", "samples", difference=True) for item in row[2:])))
+        if rows[-1][0] < 0 or (len(row) == 3 and not rows[-1][2] > 0):
+            raise Unreadable(0, "a time before the start of the run, or a sigma that is not above 0", "0 or later, and a standard error", "samples")
+    return made | {"samples": tuple(sorted(rows))}
+
+
+def number(value: Any, units: str, what: str, key: str, difference: bool = False) -> float:
+    """A number in SI, or text with a unit."""
     try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise Unreadable(raw.count(b"\n", 0, error.start) + 1, f"this is not UTF-8 text (byte 0x{raw[error.start]:02x})", "a CSV file in UTF-8") from None
+        return Quantity("" if units == "1" else units, what, difference=difference).validate(value)
+    except Exception as error:  # pydantic's own class, with the words in its context
+        context = getattr(error, "context", None) or {}
+        raise Unreadable(0, context.get("message", str(error)), context.get("allowed", ""), key) from None
 
 
-def fields(number: int, line: str) -> list[str]:
-    """The fields of one line."""
-    try:
-        return [field.strip() for field in next(csv.reader([line], strict=True))]
-    except csv.Error as error:
-        raise Unreadable(number, f"this is not CSV: {error}", "fields between commas, each row on a line of its own") from None
-
-
-def read(path: Path, time: str, value: str) -> list[tuple[float, float]]:
-    """(second, kelvin) of every row, by rising time; Unreadable for what is wrong, and where."""
-    text = content(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines = [(number, line) for number, line in enumerate(text, 1) if line.strip() and not line.startswith("#")]
-    if not lines:
-        raise Unreadable(1, "the file is empty", "a header and rows of numbers")
-    head, names = lines[0][0], fields(*lines[0])
-    suffix = next((suffix for suffix in KELVIN if value.endswith(suffix)), None)
-    for key, name, known, right in (("value", value, suffix is not None, [n for n in names if n.endswith(tuple(KELVIN))]),
-                                    ("time", time, time in SECONDS, [n for n in names if n in SECONDS])):  # fmt: skip
-        if name not in names or not known:
-            want = "a column whose name ends in _degC or _K" if key == "value" else f"a column named {', '.join(SECONDS)}"
-            raise Unreadable(head, f"no such column: {name!r}", right or f"{want}; here are {brief(listed(names))}", key)
-        if names.count(name) > 1:
-            raise Unreadable(head, f"two columns are called {name!r}", "each name once", key)
-    if len(lines) == 1:
-        raise Unreadable(head + 1, "no rows follow the header", "a row for each measurement")
-    if len(lines) > MOST_ROWS + 1:
-        raise Unreadable(lines[MOST_ROWS + 1][0], f"more than {MOST_ROWS} rows", "fewer: every point of a sweep carries the curve; keep every tenth row, say")
-    at = names.index(time), names.index(value)
-    return sorted((pair(number, fields(number, line), names, at, time, suffix) for number, line in lines[1:]), key=lambda row: row[0])
-
-
-def pair(number: int, row: list[str], names: list[str], at: tuple[int, int], time: str, suffix: str) -> tuple[float, float]:
-    """(second, kelvin) of one row."""
-    if len(row) != len(names):
-        raise Unreadable(number, f"{len(row)} fields under a header of {len(names)}", "as many fields as the header has")
-    second, kelvin = (figure(number, row[k], names[k]) for k in at)
-    second, kelvin = second * SECONDS[time], kelvin + KELVIN[suffix]
-    if second < 0:
-        raise Unreadable(number, "a time before the start of the run", "0 or later")
-    if kelvin < 0:
-        raise Unreadable(number, f"{kelvin:g} K, below absolute zero", "a temperature in the column's unit")
-    return second, kelvin
-
-
-def figure(number: int, text: str, name: str) -> float:
-    """One number."""
-    try:
-        found = math.nan if "_" in text else float(text)
-    except ValueError:
-        found = math.nan
-    if not math.isfinite(found):
-        raise Unreadable(number, f"{name} is no finite number: {brief(text)}", "a number")
-    return found
+__all__ = ["Measured", "Number", "Unreadable", "embed", "target"]

@@ -25,7 +25,7 @@ class Output(Model):
     probes: dict[str, Point] = doc({}, description="points that are followed, by name")
     observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
     snapshots: Snapshots | None = None
-    measured: dict[str, Measured] = doc({}, description="measured temperatures by probe: drawn beside the run, and compared with it (misfit_<probe>)")
+    measured: dict[str, Measured] = doc({}, description="measured curves by name: drawn, compared with the run (misfit_<name>), fitted by `mpm fit`")
 
 
 class RobinSlab(Kind):

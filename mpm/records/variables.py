@@ -240,8 +240,8 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
         return replace(VARIABLES[probe], name=name, symbol="", long_name=f"error of {VARIABLES[probe].long_name}")
     if field == "misfit" and probe:
         return Variable(name, "", "K", POINT, f"root-mean-square difference from the temperature measured at {probe.replace('_', ' ')}")
-    if field == "measured" and probe.startswith("temperature_"):
-        return Variable(name, "θ", "K", SERIES, f"temperature measured at {probe.removeprefix('temperature_').replace('_', ' ')}")
+    if field == "measured" and probe:
+        return replace(of := describe(probe, dimension, probes), name=name, long_name=f"measured {of.long_name}")
     if field in _AT_PROBE and probe:
         return replace(VARIABLES[field], name=name, dims=SERIES, long_name=f"{field} at {probe.replace('_', ' ')}")
     raise KeyError(name)

@@ -135,6 +135,8 @@ class Table:
         columns |= self.numbers | {"attempts": self.attempts}
         columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
         probes = self.plan.cases[0].experiment.output.probes if self.plan.cases else ()
+        first = self.plan.cases[0].experiment if self.plan.cases else None
+        meanings |= {f"misfit_{name}": misfit(first, name, curve) for name, curve in (first.output.measured.items() if first is not None else ())}
         said = lambda name, values: described(name, self.dims, self.full(values), self.dimension, probes, **meanings.get(name, {}))  # noqa: E731
         group = Group({name: said(name, values) for name, values in columns.items()})
         coordinates = planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names))
@@ -158,11 +160,17 @@ class Table:
 
     def measured(self) -> dict[str, Array]:
         """Measured curves of the config, each over its own times."""
-        found = {}
-        for probe, curve in self.plan.cases[0].experiment.output.measured.items() if self.plan.cases else ():
-            samples, dim = np.array(curve.samples), f"measured_time_{probe}"
-            found[dim] = Array((dim,), samples[:, 0], {"units": "s", "long_name": f"times measured at {probe.replace('_', ' ')}"})
-            found[f"measured_temperature_{probe}"] = described(f"measured_temperature_{probe}", (dim,), samples[:, 1], source=curve.file)
+        from mpm.config.measured import target
+
+        found, experiment = {}, self.plan.cases[0].experiment if self.plan.cases else None
+        for name, curve in experiment.output.measured.items() if experiment is not None else ():
+            (variable, units), dim = target(experiment, name, curve), f"measured_time_{name}"
+            if not curve.samples:
+                continue  # one number a run: its misfit says it
+            samples, known = np.array([row[:2] for row in curve.samples]), f"measured_{variable}"
+            found[dim] = Array((dim,), samples[:, 0], {"units": "s", "long_name": f"times measured, {name.replace('_', ' ')}"})
+            about = {"units": units, "long_name": f"measured {describe(variable).long_name}", "source": curve.file}
+            found[f"{known}_{name}" if known in found else known] = Array((dim,), samples[:, 1], about)
         return found
 
     def grid(self) -> Group:
@@ -233,6 +241,15 @@ class Rows(Sequence):
 
     def part(self, k: int, name: str) -> np.ndarray:
         return self.particles[name][self.ends[k] - self.sizes[k] : self.ends[k]]
+
+
+def misfit(experiment: Any, name: str, curve: Any) -> dict[str, str]:
+    """Unit and long name of how far a point is from a measured curve."""
+    from mpm.config.measured import target
+
+    variable, units = target(experiment, name, curve)
+    long_name = describe(variable, None, experiment.output.probes).long_name
+    return {"units": units, "long_name": f"{'' if curve.equals is not None else 'root-mean-square '}difference from the measured {long_name} ({name})"}
 
 
 def with_axes(group: Group, coordinates: dict[str, Array], more: dict[str, Array] | None = None) -> Group:

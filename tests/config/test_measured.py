@@ -84,7 +84,8 @@ def curve(folder, content, config=BASE):
         (HEAD + "1,-300\n", 2, "below absolute zero"),
         (HEAD + '1,"20\n2,30\n', 2, "this is not CSV"),
         (HEAD.encode() + b"1,20\n2,\xff\n", 3, "not UTF-8 text (byte 0xff)"),
-        ("minute;oven_degC\n1;20\n", 1, "no such column: 'oven_degC'"),
+        ("minute|oven_degC\n1|20\n", 1, "no such column: 'oven_degC'"),
+        ("minute;oven_degC\n1;20,5\n2;1.000,5\n", 3, "oven_degC is no finite number: '1.000,5'"),
         ("minute,oven_degC,oven_degC\n1,20,30\n", 1, "two columns are called 'oven_degC'"),
         (HEAD + "1,20\n" * 100_001, 100_002, "more than 100000 rows"),
     ],
@@ -108,6 +109,69 @@ def test_a_byte_order_mark_blanks_and_other_line_ends_do_not_matter(tmp_path):
     samples = curve(tmp_path, b"\xef\xbb\xbf# a comment\r\nminute, oven_degC\r\n1, 26.85\r\n\r\n2, 36.85\r\n")
     assert [t for t, _ in samples] == [60, 120]
     assert [theta for _, theta in samples] == pytest.approx([300, 310])
+
+
+SCENE = BASE.replace("  probes:", "  observables: [temperature.mean, heat.total]\n  probes:").partition("  measured:")[0] + "  measured: {middle: {%s}}\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "how", "samples"),
+    [
+        ("minute;Ofen [°F]\n1,5;68\n2,25;104\n", "value: 'Ofen [°F]'", [(90, 293.15), (135, 313.15)]),
+        ("time [min]\toven_degC\n0\t20\n1.5\t40\n", "value: oven_degC", [(0, 293.15), (90, 313.15)]),
+        ("Time,Heat (kJ/m2)\n12:30:00,1.5\n12:31:30,2\n", "of: heat.total, value: Heat (kJ/m2)", [(0, 1500), (90, 2000)]),
+        ("Time,T\n23:59,20\n", "unit: degC, value: T, start: '23:58'", [(60, 293.15)]),
+        ("Timestamp,T_degC\n2026-05-01 23:59:30,20\n2026-05-02 00:00:15,30\n", "value: T_degC", [(0, 293.15), (45, 303.15)]),
+        ("minute,oven_degC,spread_K\n0,20,0.5\n1,40,1\n", "value: oven_degC, sigma: spread_K", [(0, 293.15, 0.5), (60, 313.15, 1)]),
+        ("minute,oven_degC\n1,10\n2,20\n4,40\n", "value: oven_degC, start: 2", [(0, 293.15), (120, 313.15)]),
+    ],
+)
+def test_curves_as_people_write_them(tmp_path, content, how, samples):
+    found = curve(tmp_path, content, SCENE % f"file: curve.csv, {how}")
+    assert [item for row in found for item in row] == pytest.approx([item for row in samples for item in row])
+
+
+PROBE = "\n".join(["Combustion Inc. Probe Data", "App: iOS 2.1.0", "CSV version: 4", "Probe S/N: 10001A2B", "Probe FW version: v1.2.2",
+    "Probe HW revision: v0.31-A1", "Framework: iOS", "Sample Period: 5000", "Created: 2026-05-01 12:00:00", "",
+    "Timestamp,SessionID,SequenceNumber,T1,T2,T3,T4,T5,T6,T7,T8,VirtualCoreTemperature",
+    "100.0,77,20,4.25,4.3,4.5,5.0,6.5,9.0,14.0,21.55,4.25", "105.0,77,21,4.35,4.4,4.6,5.2,6.9,9.8,15.5,28.1,4.35",
+    "110.0,77,22,4.55,4.5,4.7,5.5,7.4,10.8,17.2,35.4,4.55", ""])  # fmt: skip
+
+
+def test_the_export_of_an_eight_sensor_probe(tmp_path):
+    found = curve(tmp_path, PROBE, SCENE % "file: curve.csv, value: T1, sigma: 0.5 K")
+    assert [t for t, _ in found] == [0, 5, 10]
+    assert [theta for _, theta in found] == pytest.approx([277.4, 277.5, 277.7])
+
+
+@pytest.mark.parametrize(
+    ("content", "how", "words"),
+    [
+        ("minute,oven\n1,20\n", "value: oven", "curve.csv:1: the column 'oven' tells no unit; allowed: a name that ends in one, as oven_degC, or `unit: degC`"),
+        ("minute,oven_mm\n1,20\n", "value: oven_mm", "is a length, but a value is expected"),
+        ("Time,oven_degC\n1,20\n", "value: oven_degC", "curve.csv:2: Time is no clock time, and its column tells no unit: '1'"),
+        ("minute,oven_degC\n1,20\n", "value: oven_degC, sigma: spread", "no such column: 'spread'"),
+        ("minute,oven_degC\n1,20\n", "value: oven_degC, sigma: 2 mm", "is a length"),
+        ("minute,oven_degC\n1,20\n", "value: oven_degC, of: mass.total", "'mass.total' is not recorded"),
+    ],
+)
+def test_what_cannot_be_read_is_told(tmp_path, content, how, words):
+    with pytest.raises(mpm.ConfigError, match=re.escape(words)):
+        curve(tmp_path, content, SCENE % f"file: curve.csv, {how}")
+
+
+def test_numbers_in_the_config_are_curves_too(tmp_path):
+    text = SCENE.replace("heat.total", "heat.total, time_to.middle.40_degC").partition("  measured:")[0] + (
+        "  measured: {rest: {of: temperature.mean, samples: [[1 min, 30 degC]], sigma: 2 K}, reached: {of: time_to.middle.40_degC, equals: 2 min}}\n"
+    )
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    experiment = mpm.load(path)
+    rest, reached = experiment.output.measured.values()
+    assert (rest.samples, rest.sigma, reached.equals, reached.units) == (((60.0, 303.15),), 2.0, 120.0, "s")
+    tree = mpm.run(experiment)
+    assert float(tree.misfit_rest) == pytest.approx(3.15)  # the slab stays at 300 K
+    assert tree.misfit_rest.attrs["units"] == "K" and math.isnan(float(tree.misfit_reached))
 
 
 def test_rows_in_any_order_of_time_are_the_same_curve(tmp_path):
