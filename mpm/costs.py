@@ -18,7 +18,8 @@ STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: el
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
-RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3}  # s of the interpreter in a run, by method
+RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3,
+         "JoinedLinear": 0.1, "JoinedNewton": 0.5}  # s of the interpreter in a run, by method
 SHOWN = 20e-6  # s an output of rigid bodies
 COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
@@ -182,6 +183,7 @@ def estimate_rigid(experiment) -> dict:
     from mpm.scene.build import SceneError
     from mpm.scene.rigid import rigid_bodies
     from mpm.scene.shapes import shape
+    from mpm.scene.still import joints
 
     grid, unknowns = experiment.grid, 0
     for body in experiment.bodies.values():
@@ -189,7 +191,8 @@ def estimate_rigid(experiment) -> dict:
         unknowns += math.prod(math.ceil(float(extent) / grid.cell) + 2 for extent in upper - lower)
     if unknowns > MOST_UNKNOWNS:
         raise SceneError(f"{unknowns} unknowns in rigid bodies, more than {MOST_UNKNOWNS}: take a coarser grid.cell (the method is of order 2 to 3)")
-    ahead = outlook(rigid_bodies(experiment), grid.dimension, grid.cell, end=experiment.time.end, method=Method(type(experiment.method.rigid).kind))
+    bodies, method = rigid_bodies(experiment), Method(type(experiment.method.rigid).kind)
+    ahead = outlook(bodies, grid.dimension, grid.cell, end=experiment.time.end, method=method, joints=joints(experiment))
     return {
         "particles": 0,
         "unknowns": ahead["unknowns"],

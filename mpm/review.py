@@ -5,24 +5,22 @@ heat      heat content and heat taken in disagree by more than HEAT of the large
 energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads
 thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
-insulated bodies that do not move touch: no heat passes between them
 edge      material comes within a cell of a side of the domain that `walls` does not name: a wall without friction stands there
 Cost      a few microseconds a point: series are looked at once, at the end.
 """
 
 from collections.abc import Iterator
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from mpm.records.variables import describe
 from mpm.scene.build import elastic_law, stress_temperature_modulus
-from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
 
-VOLUME, HEAT, ENERGY, THIN, TOUCH = 0.1, 0.01, 0.2, 2.0, 0.05
+VOLUME, HEAT, ENERGY, THIN = 0.1, 0.01, 0.2, 2.0
 SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
 
 
@@ -114,18 +112,6 @@ def probe(experiment: Any, run: Run) -> Iterator[str]:
             yield f"{name} has no value from t = {run.times[gone[0]]:.4g} s on"
 
 
-def insulated(experiment: Any, run: Run) -> Iterator[str]:
-    if experiment.moving or experiment.grid.dimension == 0:
-        return
-    h, outlines = experiment.grid.cell, {name: shape(body.shape, experiment.grid.dimension) for name, body in experiment.bodies.items()}
-    for (name, one), (other, two) in combinations(outlines.items(), 2):
-        (low, high), (least, most) = one.bounds(), two.bounds()
-        if np.all(np.maximum(low, least) - np.minimum(high, most) < TOUCH * h):
-            edges = [np.linspace(a, b, max(2, int((b - a) / h) + 1)) for a, b in zip(low, high, strict=True)]
-            if np.min(np.abs(two.distance(cut_quadrature(one, edges, 2)[1].x))) < TOUCH * h:
-                yield f"{name} and {other} touch and do not move: no heat passes between them"
-
-
 def edge(experiment: Any, run: Run) -> Iterator[str]:
     axes = extents(experiment, run)
     for axis, size in zip(axes, experiment.grid.size, strict=False):
@@ -137,4 +123,4 @@ def edge(experiment: Any, run: Run) -> Iterator[str]:
                 yield f"material is within a cell of the side {side} from t = {run.times[near[0]]:.4g} s on, where the domain ends with a wall without friction"
 
 
-LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "insulated": insulated, "edge": edge}
+LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "edge": edge}

@@ -15,7 +15,6 @@ KINDS = {
     "torn": "more `method.particles`, or larger cells",
     "thin": "smaller cells",
     "probe": "put the probe where material stays",
-    "insulated": "bodies with `elastic` pass heat where they touch; read the result as that of bodies kept apart",
     "edge": "enlarge `grid.size`, or say under `walls` what stands there",
 }
 

@@ -69,22 +69,9 @@ def test_a_probe_whose_particle_is_gone(core):
     assert planted(core, experiment, lambda body: None) == ()
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.02])
-def test_bodies_that_touch_and_do_not_move(gap):
-    """They pass no heat to each other, and that is told; bodies apart are not spoken of."""
-    heat = {"density": 1000, "heat": {"fourier": {"kappa": 0.5, "alpha": 2000}}}
-    bodies = {"a": (0.0, 0.1, 370.0), "b": (0.1 + gap, 0.2 + gap, 290.0)}
-    data = {
-        "grid": {"dimension": 1, "size": [0.3], "cell": 0.01}, "materials": {"m": heat}, "time": {"end": 1.0},
-        "bodies": {name: {"shape": {"box": {"lower": [low], "upper": [high]}}, "temperature": T, "material": "m"} for name, (low, high, T) in bodies.items()},
-    }  # fmt: skip
-    told = [text for text in mpm.run_point(mpm.load(data)).facts["warnings"] if text.startswith("insulated")]
-    assert ("a and b touch" in told[0] and KINDS["insulated"] in told[0]) if gap == 0 else not told
-
-
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe", "insulated"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+    assert set(LOOKS) == {*PAIRS, "heat", "probe"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):

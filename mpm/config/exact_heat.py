@@ -38,4 +38,11 @@ class Stefan(Kind):
     body: str | None = doc(None, description="the body that melts; the only one unless given")
 
 
-HEAT: tuple[type[Kind], ...] = (NafemsT3, NafemsT4, GaussianBox, Stefan)
+class LayersInContact(Kind):
+    """Slabs or coaxial cylinders that touch, each of its own material (series)."""
+
+    kind: ClassVar[str] = "layers"
+    body: str | None = doc(None, description="the layer that the error is told of")
+
+
+HEAT: tuple[type[Kind], ...] = (NafemsT3, NafemsT4, GaussianBox, Stefan, LayersInContact)

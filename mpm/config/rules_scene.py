@@ -214,7 +214,7 @@ def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
 
 
 def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
-    """Two bodies that are there, move, and are not named together elsewhere."""
+    """Two bodies that are there and are not named together elsewhere; of bodies that do not move only heat can be said."""
     known, at = experiment.bodies, ("contacts", index, "between")
     for place, name in enumerate(item.between):
         if name not in known:
@@ -225,7 +225,9 @@ def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     elif any(frozenset(other.between) == frozenset(item.between) for other in experiment.contacts[:index] if other is not MISSING):
         yield Finding(at, "this pair is named before", "one entry a pair", on_key=True)
     elif not moves(experiment):
-        yield Finding(at, "no body here has an elastic law: bodies that do not move pass no heat to each other", "an elastic section", on_key=True)
+        for key in ("friction", "stick", "welded"):
+            if getattr(item, key) not in (None, 0.0):
+                yield Finding(("contacts", index, key), "no body here has an elastic law, so nothing slides: only heat can pass", "conductance", on_key=True)
 
 
 def used(experiment: Any) -> list[Any]:

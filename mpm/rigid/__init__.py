@@ -3,12 +3,15 @@
     rho alpha(theta) d theta/dt = div(kappa(theta) grad theta),      -kappa d theta/dn = beta (theta - outside)     0 <= beta <= inf
 
 nodes      quadratic B-splines of a body's box of nodes; matrices as stencils          geometry   cut quadrature to M, K, B: once a shape and grid
-around     surroundings over time, radiation
+surroundings   what is outside, over time; radiation
 system     one body's laws and surroundings                                            band       compiled band Cholesky; gradients   where that is too large
 linear     constant laws: consistent mass, SDIRK of order 4 or 2 (sdirk)               tables     theta(h), Kirchhoff's potential Pi(h)
 chebyshev  laws of temperature: lumped mass, enthalpy (enthalpy), RKC of order 2       newton     the same equations by SDIRK and Newton
 hats       hat functions, M-matrices                                                   bounded    their steps: nothing beyond its data
-drive      the loop over steps: sizes, outputs, crossings                              run        `solve`, `outlook`, the choice of method
+touching   which points of a surface lie on another body        coupling   heat through a shared surface (Nitsche)
+group      bodies that conduct into one another as one system   joined     their steps
+time_loop  the loop over steps: sizes, outputs, crossings                              run        `solve`, `outlook`, the choice of method
+gather     what came out, of all bodies and of each
 
 Measured by tests/rigid/figures.py: one core of a busy 2-core Zen 4 machine, best of five, geometry kept (6 ms for the loaf, 3 for the disc).
 
@@ -31,7 +34,9 @@ Fails when   a temperature must stay strictly between its data: in the first ste
              a body in 3-D behind beta = inf is finer than 9 cells a radius: 200 iterations a stage instead of 5.
 """
 
-from mpm.rigid.run import Method, RigidRun, outlook, solve
+from mpm.rigid.gather import RigidRun
+from mpm.rigid.group import Joint
+from mpm.rigid.run import Method, outlook, solve
 from mpm.rigid.system import RigidBody
 
-__all__ = ["Method", "RigidBody", "RigidRun", "outlook", "solve"]
+__all__ = ["Joint", "Method", "RigidBody", "RigidRun", "outlook", "solve"]

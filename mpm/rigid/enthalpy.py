@@ -17,7 +17,7 @@ from mpm.rigid.geometry import evaluated
 from mpm.rigid.nodes import apply
 from mpm.rigid.ordered import dot
 from mpm.rigid.surroundings import Radiant, radiate
-from mpm.rigid.tables import Table, enthalpies, make_table, temperatures
+from mpm.rigid.tables import Table, Tables, enthalpies, make_table, piece, temperatures
 
 ROUNDOFF = 1e-10  # of the heat that moves
 CANCELLED = 1e-14  # of the terms that nearly cancel behind a stiff surface whose temperature changes
@@ -32,7 +32,7 @@ class Lumped(NamedTuple):
     on_theta: np.ndarray  # (n, N) stencil applied to theta - zero
     on_potential: np.ndarray  # (n, N) or (0, N) stencil applied to Pi
     facing: np.ndarray
-    table: Table
+    table: Table | Tables
     radiant: Radiant
 
 
@@ -59,15 +59,10 @@ def make_lumped(system) -> tuple[Lumped, np.ndarray]:
 @kernel(inline=True)
 def split(table, h, theta, potential, both):
     """theta - zero, and where `both` Pi, at enthalpies h."""
-    top = len(table.theta) - 1
     for i in range(len(h)):
-        s = (h[i] - table.start) * table.per
-        k = min(max(int(np.floor(s)) + 1, 0), top)
-        t = s - (k - 1)
-        c = table.theta[k]
+        t, c, p, _ = piece(table, i, h[i])
         theta[i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
         if both:
-            p = table.potential[k]
             potential[i] = p[0] + t * (p[1] + t * (p[2] + t * p[3]))
 
 
@@ -105,9 +100,11 @@ def rate(problem, around, h, out, theta, work):
 class Enthalpy:
     """What the enthalpy methods share: see the protocol in mpm.rigid.time_loop."""
 
+    make = staticmethod(make_lumped)
+
     def __init__(self, system, tolerance: float):
         self.system, self.tolerance = system, tolerance
-        self.problem, self.state = make_lumped(system)
+        self.problem, self.state = self.make(system)
         self.first, self.q = self.state, 0.0
         self.now, self.longest, self.steady = 0.0, system.programmes.longest, None
         self.weight = self.problem.weight

@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm.jit import kernel
 from mpm.rigid.nodes import Nodes, apply, assemble, evaluate, make_nodes
+from mpm.rigid.touching import covered, surface_beside
 
 ORDER = 4  # products of two quadratic splines, exact
 
@@ -47,34 +48,44 @@ def row_sums(stencil: np.ndarray, diff: np.ndarray) -> np.ndarray:
 
 
 @functools.lru_cache(maxsize=8)
-def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...]) -> Geometry:
+def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...], others: tuple = ()) -> Geometry:
     """Matrices of `shape` on the grid of cell `h` whose node 0 lies at `origin`, one exchange matrix for each of `sides`.
 
-    shape  hashable, with bounds(), cut(edges, order) and faces(normal (S, d), side) -> (S,) bool: mpm.scene.shapes
+    shape   hashable, with bounds(), cut(edges, order) and faces(normal (S, d), side) -> (S,) bool: mpm.scene.shapes
+    others  shapes that touch it: where they lie on it nothing is exchanged with the surroundings
     """
     lower, upper = (np.array(b, dtype=float) for b in shape.bounds())
     d = len(lower)
     if axisymmetric:
         lower[0] = max(lower[0], 0.0)
     nodes, edges = make_nodes(lower, upper, h, np.asarray(origin, dtype=float))
+    edges = on_axis(edges, axisymmetric)
     counts = np.array([len(e) - 1 for e in edges], dtype=np.int64)
-    if axisymmetric and edges[0][0] < 0:
-        edges[0] = np.concatenate([[0.0], edges[0][1:]])  # the axis cuts the first cell
     volume, surface = shape.cut(edges, ORDER)
+    x, sw, normal, cell = surface.x, surface.w, surface.normal, surface.cell
+    if others:
+        x, sw, normal, cell = surface_beside(shape, others, edges, ORDER, h)
+        bare = ~covered(x, normal, others, h)
+        x, sw, normal, cell = x[bare], sw[bare], normal[bare], cell[bare]
     w = volume.w * volume.x[:, 0] if axisymmetric else volume.w
-    sw = surface.w * surface.x[:, 0] if axisymmetric else surface.w
+    sw = sw * x[:, 0] if axisymmetric else sw
     mass, stiffness = np.zeros((2, len(nodes.diff), nodes.size))
     assemble(nodes, d, volume.x, w, volume.cell, counts, True, mass, stiffness)
     exchange, faces = [], []
     for side in sides:
-        part = shape.faces(surface.normal, side)
+        part = shape.faces(normal, side)
         stencil = np.zeros_like(mass)
-        assemble(nodes, d, surface.x[part], sw[part], surface.cell[part], counts, False, stencil, stencil)
+        assemble(nodes, d, x[part], sw[part], cell[part], counts, False, stencil, stencil)
         exchange.append(stencil)
-        faces.append((surface.x[part], sw[part]))
+        faces.append((x[part], sw[part]))
     sight = evaluated(nodes, np.concatenate([volume.x[middles(volume)], surface.x]))
     sums = tuple(row_sums(b, nodes.diff) for b in exchange)
     return Geometry(nodes, d, mass, stiffness, tuple(exchange), row_sums(mass, nodes.diff), sums, mass[0] > 0, volume.x, w, tuple(faces), sight)
+
+
+def on_axis(edges, axisymmetric: bool):
+    """The lines, from the axis on where there is one: it cuts the first cell."""
+    return [np.concatenate([[0.0], edges[0][1:]]), *edges[1:]] if axisymmetric and edges[0][0] < 0 else edges
 
 
 def middles(volume) -> np.ndarray:

@@ -11,8 +11,9 @@ import functools
 
 import numpy as np
 
-from mpm.rigid.geometry import ORDER, Geometry, evaluated, middles
+from mpm.rigid.geometry import ORDER, Geometry, evaluated, middles, on_axis
 from mpm.rigid.nodes import SNAP, Nodes
+from mpm.rigid.touching import covered, surface_beside
 
 LEAST = 0.5
 
@@ -62,27 +63,31 @@ def places(nodes: Nodes, d: int) -> np.ndarray:
 
 
 @functools.lru_cache(maxsize=8)
-def hat_geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...]) -> Geometry:
+def hat_geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...], others: tuple = ()) -> Geometry:
     """As mpm.rigid.geometry.geometry."""
     lower, upper = (np.array(b, dtype=float) for b in shape.bounds())
     d = len(lower)
     if axisymmetric:
         lower[0] = max(lower[0], 0.0)
     nodes, edges = hat_nodes(lower, upper, h, np.asarray(origin, dtype=float))
-    if axisymmetric and edges[0][0] < 0:
-        edges[0] = np.concatenate([[0.0], edges[0][1:]])
+    edges = on_axis(edges, axisymmetric)
     volume, surface = shape.cut(edges, ORDER)
+    sx, sw, normal = surface.x, surface.w, surface.normal
+    if others:
+        sx, sw, normal, _ = surface_beside(shape, others, edges, ORDER, h)
+        bare = ~covered(sx, normal, others, h)
+        sx, sw, normal = sx[bare], sw[bare], normal[bare]
     w = volume.w * volume.x[:, 0] if axisymmetric else volume.w
-    sw = surface.w * surface.x[:, 0] if axisymmetric else surface.w
+    sw = sw * sx[:, 0] if axisymmetric else sw
     index, value = evaluated(nodes, volume.x)
     lumped = np.bincount(index.ravel(), weights=(w[:, None] * value).ravel(), minlength=nodes.size)
     stiffness = conductances(nodes, d, index, volume.x, w)
     place, exchange, areas, faces, depths = places(nodes, d), [], [], [], []
     for side in sides:
-        part = shape.faces(surface.normal, side)
-        index, value = evaluated(nodes, surface.x[part])
+        part = shape.faces(normal, side)
+        index, value = evaluated(nodes, sx[part])
         share = (sw[part][:, None] * value).ravel()
-        far = np.einsum("sad,sd->sa", surface.x[part][:, None] - place[index], surface.normal[part]).ravel()
+        far = np.einsum("sad,sd->sa", sx[part][:, None] - place[index], normal[part]).ravel()
         area = np.bincount(index.ravel(), weights=share, minlength=nodes.size)
         deep = np.bincount(index.ravel(), weights=share * far, minlength=nodes.size)
         stencil = np.zeros_like(stiffness)

@@ -159,7 +159,7 @@ class LinearSteps:
         self.slopes = self.stages
         self.q_before = self.q
         self.state = self.state + combined(self.dt * weights, self.stages)
-        self.q += self.dt * dot(weights, self.fluxes)
+        self.q = self.q + self.dt * combined(weights, self.fluxes)
         self.now += self.dt
 
     def dense(self, s):

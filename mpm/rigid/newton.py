@@ -96,20 +96,20 @@ class NewtonSteps(Enthalpy):
 
     def attempt(self, dt: float) -> float:
         a = self.tableau.a
-        f, q, guess = np.empty((len(a), len(self.state))), np.empty(len(a)), self.state
+        f, q, guess = np.empty((len(a), len(self.state))), [0.0] * len(a), self.state
         for i, row in enumerate(a):
             found = self.stage(self.state + combined(dt * row[:i], f[:i]), dt * row[i], self.around(self.now + dt * row.sum()), guess, f[i])
             if found is None:
                 return np.inf
             guess, q[i] = found
-        self.rates, self.taken, self.dt, self.reached = f, q, dt, guess
+        self.rates, self.taken, self.dt, self.reached = f, np.array(q), dt, guess
         return self.norm(combined(dt * self.tableau.error, f)) / self.allowed
 
     def accept(self):
         weights = self.dt * self.tableau.a[-1]
         self.before_q = self.q
         self.state = self.state + combined(weights, self.rates)
-        self.q += dot(weights, self.taken)
+        self.q = self.q + combined(weights, self.taken)
         self.now += self.dt
 
     def dense(self, s):

@@ -1,25 +1,26 @@
 """Solve the heat equation in rigid bodies: choose a method, run each body, put the pieces together."""
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mpm.materials.laws import Constant
-from mpm.materials.roles import enthalpy, value
-from mpm.outcome import COMPLETED, MAX_PRINCIPLE, Outcome, outcome
+from mpm.outcome import COMPLETED, MAX_PRINCIPLE
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
-from mpm.rigid.geometry import evaluated
+from mpm.rigid.gather import Part, Seat, gather
+from mpm.rigid.group import Group, Joint, groups, make_group
+from mpm.rigid.joined import JoinedLinear, JoinedNewton
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
-from mpm.rigid.nodes import interpolate
 from mpm.rigid.system import RigidBody, System, law, make_system
-from mpm.rigid.time_loop import Trace, Watch, drive
+from mpm.rigid.time_loop import Shares, Trace, Watch, Whole, drive
 
 STEPS, FACTORS, LINEAR = 150, 500, 20  # of a run at the default tolerance: explicit steps, factorisations of Newton and of constant laws
 LARGE, LESS = 2e10, 5e8  # multiply-adds of one factorisation that nobody waits for (3 s), and above which conjugate gradients are quicker, unless STIFF
+SEVERAL = 4e9  # the latter for bodies that conduct into one another, whose iterations cost more
 STIFF, SOLUTIONS, TURNS = 100.0, 150, (6, 200)  # beta h/kappa; solutions a run, iterations each below and above STIFF
 
 
@@ -33,49 +34,14 @@ class Method:
     step: float | None = None
 
 
-@dataclass
-class RigidRun:
-    """What came out. `series` holds an array over `times` for each name; `crossings` maps (probe, temperature) to a time, nan where never reached."""
-
-    outcome: Outcome
-    times: np.ndarray
-    series: dict[str, np.ndarray]
-    crossings: dict[tuple[str, float], float]
-    steps: int
-    rejected: int
-    unknowns: int
-    wall_time: float
-    facts: dict
-    limits: dict[str, float]
-    snapshots: np.ndarray = field(repr=False)
-    bodies: list[tuple[System, Any, tuple]] = field(repr=False)
-    spent: float = 0.0  # wall time before the run was cut [s]
-
-    def sample(self, x: np.ndarray, body: int | None = None) -> np.ndarray:
-        """Temperature [K] at points x (P, d) at the last time; nan outside every body, unless one is named: then its splines go on."""
-        x = np.atleast_2d(np.asarray(x, dtype=float))
-        out = np.full(len(x), np.nan)
-        for k, (system, method, shape_state) in enumerate(self.bodies):
-            shape, state = shape_state
-            here = np.ones(len(x), dtype=bool) if body == k else (shape.distance(x) <= 1e-9 * system.geometry.nodes.h) & (body is None)
-            out[here] = system.zero + interpolate(*evaluated(system.geometry.nodes, x[here]), method.temperature(state))
-        return out
-
-    def points(self, body: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Quadrature points (Q, d) and weights (Q,) of a body, for norms of an error."""
-        geometry = self.bodies[body][0].geometry
-        return geometry.x, geometry.w
-
-
 NOTICEABLE, CORNERS, MOST = 0.005, 0.05, 0.5  # of the range of the data: told; an automatic method is changed for `bounded` (see `ways`); the run fails
-ADVICE = "`method.rigid: bounded`, or a shorter `time.step`; below absolute zero: a given flux takes more heat than there is"
 EVALUATION, PIVOT = 4e-10, 1.5e-10  # s a node and stencil entry (with its share of look-ups), s a multiply-add of the factorisation: measured
 
 
 def iterates(system: System) -> bool:
     """Whether constant laws are solved by conjugate gradients rather than by a factorisation."""
     nodes = system.geometry.nodes
-    return float(nodes.size) * float(nodes.diff[-1]) ** 2 > (LARGE if system.stiff > STIFF else LESS)
+    return float(nodes.size) * float(nodes.diff[-1]) ** 2 > (LARGE if system.stiff > STIFF else SEVERAL if isinstance(system, Group) else LESS)
 
 
 def _costs(system: System, linear: bool, explicit: ChebyshevSteps | None, end: float) -> tuple[float, float]:
@@ -88,11 +54,20 @@ def _costs(system: System, linear: bool, explicit: ChebyshevSteps | None, end: f
     return evaluations * nodes * (2 * len(diff) + 20) * EVALUATION, (LINEAR if linear else FACTORS) * nodes * band * (band + 40) * PIVOT
 
 
+def is_linear(system: System) -> bool:
+    """Whether nothing that a body does depends on its temperature but in proportion."""
+    parts = system.parts if isinstance(system, Group) else (system,)
+    return all(isinstance(one.kappa, Constant) and isinstance(one.alpha, Constant) and len(one.hot) == 0 for one in parts)
+
+
 def choose(system: System, method: Method, end: float):
     """The method's object for one body. `auto`: implicit where kappa and alpha are constant, else what costs less."""
     if method.kind == "bounded":
         return BoundedSteps(system, method.tolerance)
-    linear = isinstance(system.kappa, Constant) and isinstance(system.alpha, Constant) and len(system.hot) == 0
+    linear = is_linear(system)
+    if isinstance(system, Group):
+        checked = method.step is None
+        return JoinedLinear(system, method.tolerance, method.order, iterates(system), checked) if linear else JoinedNewton(system, method.tolerance, 2)
     if linear and method.kind != "explicit":
         return LinearSteps(system, method.tolerance, method.order, iterates(system), checked=method.step is None)
     if method.kind == "implicit":
@@ -102,11 +77,16 @@ def choose(system: System, method: Method, end: float):
     return explicit if method.kind == "explicit" or cost < rival else NewtonSteps(system, method.tolerance, method.order)
 
 
-def ways(body: RigidBody, method: Method) -> list[Method]:
-    """What to try, one after the other while temperatures leave their data: `auto` ends with `bounded`, and begins with it where nothing is conducted."""
-    if method.kind != "auto":
+def ways(bodies: list[RigidBody], method: Method) -> list[Method]:
+    """What to try, one after the other while temperatures leave their data: `auto` ends with `bounded`, and begins with it where nothing is conducted.
+
+    Bodies that conduct into one another take implicit steps on splines.
+    """
+    if len(bodies) > 1 and method.kind in ("explicit", "bounded"):
+        raise ValueError(f"bodies that conduct into one another take implicit steps, not {method.kind} ones")
+    if method.kind != "auto" or len(bodies) > 1:
         return [method]
-    last, kappa = Method("bounded", tolerance=1e-3, step=method.step), law(body.kappa)
+    last, kappa = Method("bounded", tolerance=1e-3, step=method.step), law(bodies[0].kappa)
     return [last] if isinstance(kappa, Constant) and kappa.constant == 0 else [method, last]
 
 
@@ -121,15 +101,15 @@ def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float
     return max(low - slack, ground), high + slack
 
 
-def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
+def outlook(bodies, space, h, origin=None, end=1.0, method=None, joints=()) -> dict:
     """What `solve` would do, without doing it: unknowns, methods, limits [s], a guess at seconds, bytes of the matrices."""
     method, axisymmetric = method or Method(), space == "axisymmetric"
     dimension = 2 if axisymmetric else int(space)
     origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
     found = {"unknowns": 0, "methods": [], "limits": {}, "seconds": 0.0, "memory_bytes": 0}
-    for body in bodies:
-        way = ways(body, method)[0]
-        system = make_system(body, axisymmetric, h, origin, float(end), way.kind == "bounded")
+    for members in groups(len(bodies), joints):
+        way = ways([bodies[b] for b in members], method)[0]
+        system, _ = system_of(bodies, members, joints, axisymmetric, h, origin, float(end), way.kind == "bounded")
         steps = choose(system, way, float(end))
         explicit = isinstance(steps, ChebyshevSteps)
         linear = isinstance(steps, LinearSteps)
@@ -144,16 +124,19 @@ def outlook(bodies, space, h, origin=None, end=1.0, method=None) -> dict:
     return found
 
 
-def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None, keeper=None):
+def solve(
+    bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresholds=(), method=None, stop=None, reference=None, snapshots=None, keeper=None, joints=()
+):
     """Heat in rigid bodies from 0 to `end` [s]: a RigidRun.
 
-    bodies      RigidBody each; they do not touch, and each has its own nodes
+    bodies      RigidBody each, on nodes of its own
     space       1, 2, "axisymmetric" or 3;  h: cell [m];  origin: place of node 0 (default zero): shift it to shift the grid against the bodies
     times       output times [s], any; probes {name: x}, thresholds [(probe name, temperature [K])]
     method      Method; stop(fraction, time) -> True ends the run with outcome `budget`
     snapshots   (times (S,), points (P, d)): temperatures there in `RigidRun.snapshots`, nan outside the bodies
     reference   temperature at which heat content counts as zero [K]; the first body's start unless given
     keeper      mpm.memory: the run goes on where it was cut, with the same bits
+    joints      mpm.rigid.group.Joint of every pair that touches; those that conduct are solved together
     Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric; mpm.runner makes the latter whole).
     """
     start = time.perf_counter()
@@ -166,37 +149,65 @@ def solve(bodies, space, h, origin=None, end=1.0, times=(), probes=None, thresho
     times = np.asarray(times, dtype=float)
     places = np.array([np.atleast_1d(x) for x in probes.values()], dtype=float).reshape(-1, dimension)
     owner = np.argmin([body.shape.distance(places) for body in bodies], axis=0) if len(places) else np.zeros(0, dtype=int)
-    names, parts, run_bodies = list(probes), [], []
+    names, parts = list(probes), []
     shot_times, points = (np.asarray(a, dtype=float) for a in snapshots or (np.zeros(0), np.zeros((0, dimension))))
-    seen = np.full((len(shot_times), len(points)), np.nan)
-    for k, body in enumerate(bodies):
-        mine = np.flatnonzero(owner == k)
-        here = np.flatnonzero(body.shape.distance(points) <= 1e-9 * h)
-        beat = None if stop is None else (lambda part, t, k=k: stop((k + part) / len(bodies), t))
+    seen, inside = np.full((len(shot_times), len(points)), np.nan), [body.shape.distance(points) <= 1e-9 * h for body in bodies]
+    plan = groups(len(bodies), joints)
+    for k, members in enumerate(plan):
+        beat = None if stop is None else (lambda part, t, k=k: stop((k + part) / len(plan), t))
         done = Trace.recalled(before["done"][k]) if k < len(before["done"]) else None
         cut = before["drive"] if k == len(before["done"]) else None
-        tries = ways(body, method)
+        tries = ways([bodies[b] for b in members], method)
         for again in range(done.again if done is not None else before["again"] if cut is not None else 0, len(tries)):
             way, last = tries[again], again == len(tries) - 1
-            system = make_system(body, axisymmetric, h, origin, float(end), way.kind == "bounded")
+            system, seats = system_of(bodies, members, joints, axisymmetric, h, origin, float(end), way.kind == "bounded")
             steps = choose(system, way, float(end))
-            levels = [(int(np.flatnonzero(mine == names.index(name))[0]), level - system.zero) for name, level in thresholds if names.index(name) in mine]
-            shots = (shot_times, *evaluated(system.geometry.nodes, points[here]))
-            inner = None if keeper is None else Within(keeper, [trace for _, _, trace, _ in parts], again, before["spent"], start)
+            mine, levels, rows = [], [], []
+            for b, seat in zip(members, seats, strict=True):
+                mine += (here := np.flatnonzero(owner == b)).tolist()
+                rows.append(seat.at(places[here]))
+            levels = [(mine.index(names.index(name)), level - system.zero) for name, level in thresholds if names.index(name) in mine]
+            shots = (shot_times, *joined(seat.at(points[inside[b]]) for b, seat in zip(members, seats, strict=True)))
+            inner = None if keeper is None else Within(keeper, [part.trace for part in parts], again, before["spent"], start)
             reach = limits(system, steps, way.step is not None, last)
-            watch = Watch(times, evaluated(system.geometry.nodes, places[mine]), levels, system.geometry.sight, shots, beat, inner, reach)
+            told = Whole() if len(members) == 1 else shares(system)
+            watch = Watch(times, joined(rows), levels, system.geometry.sight, shots, beat, inner, reach, told)
             trace = done or drive(steps, watch, float(end), system.geometry.volume, way.step, cut)
             trace.again, cut = again, None
             if trace.code != MAX_PRINCIPLE:
                 break
-        parts.append((system, steps, trace, mine))
-        seen[: len(trace.shots), here] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(here))
-        run_bodies.append((system, steps, (body.shape, trace.final)))
+        parts.append(Part(members, seats, system, steps, trace, np.array(mine, dtype=int)))
+        at = np.concatenate([np.flatnonzero(inside[b]) for b in members])
+        seen[: len(trace.shots), at] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(at))
         if trace.code != COMPLETED:
             break
-    run = _gather(parts, run_bodies, seen, times, names, thresholds, reference, start)
+    run = gather(parts, len(bodies), seen, times, names, thresholds, reference, start)
     run.spent = before["spent"]
     return run
+
+
+def joined(rows) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and values of points, one after another."""
+    index, value = zip(*rows, strict=True)
+    return np.concatenate(index), np.concatenate(value)
+
+
+def shares(system: Group) -> Shares:
+    """What is told of each body of a group."""
+    return Shares(system.sums, np.cumsum([0, *(len(part.geometry.sight[0]) for part in system.parts[:-1])]))
+
+
+def system_of(bodies, members, joints, axisymmetric: bool, h: float, origin, end: float, hats: bool = False) -> tuple[System, list[Seat]]:
+    """The equations of one body, or of a group that conduct into one another, and where each body's unknowns are."""
+    beside = {b: tuple(bodies[j.second if j.first == b else j.first].shape for j in joints if b in (j.first, j.second)) for b in members}
+    if len(members) == 1:
+        (b,) = members
+        system = make_system(bodies[b], axisymmetric, h, origin, end, hats, beside[b])
+        return system, [Seat(bodies[b].shape, system.geometry)]
+    within = [Joint(members.index(j.first), members.index(j.second), j.conductance) for j in joints if j.first in members and j.second in members]
+    system = make_group([bodies[b] for b in members], [beside[b] for b in members], within, axisymmetric, h, origin, end)
+    seats = [Seat(bodies[b].shape, part.geometry, into) for b, part, into in zip(members, system.parts, system.into, strict=True)]
+    return system, seats
 
 
 @dataclass(frozen=True)
@@ -215,59 +226,3 @@ class Within:
     def save(self, memory: dict) -> None:
         spent = self.spent + time.perf_counter() - self.start
         self.keeper.save({"done": [trace.memory() for trace in self.done], "drive": memory, "again": self.again, "spent": spent})
-
-
-def _content(system: System, reference: float) -> float:
-    """Heat of the body at `zero` above that at `reference` [J]."""
-    return system.density * float(system.geometry.volume.sum()) * (enthalpy(system.alpha, system.zero) - enthalpy(system.alpha, reference))
-
-
-def beyond(system: System, trace: Trace) -> float:
-    """How far a body's temperatures leave the bounds of their data, as a share of the range."""
-    low, high = system.bounds
-    worst = max(system.zero + max(trace.most, default=-np.inf) - high, low - system.zero - min(trace.least, default=np.inf), 0.0)
-    return float(worst / system.span) if worst > 1e-9 * system.hottest else 0.0
-
-
-def _gather(parts, run_bodies, snapshots, times, names, thresholds, reference, start) -> RigidRun:
-    shown = min(len(trace.heat) for _, _, trace, _ in parts)
-    series = {name: np.full(shown, np.nan) for name in (f"temperature.{n}" for n in names)}
-    if taken := {"temperature.mean", "temperature.min", "temperature.max"}.intersection(series):
-        raise ValueError(f"a probe has the name of a result: {', '.join(taken)}")
-    series |= {name: np.zeros(shown) for name in ("temperature.mean", "heat", "heat_exchanged", "heat_ledger")}
-    least, most, capacity, crossings = [], [], 0.0, {}
-    for system, steps, trace, mine in parts:
-        seen = np.array(trace.probes).reshape(len(trace.heat), len(mine))[:shown] + system.zero
-        for column, k in enumerate(mine):
-            series[f"temperature.{names[k]}"] = seen[:, column]
-        begin = steps.heat(steps.first)
-        heat, exchanged = np.array(trace.heat)[:shown], np.array(trace.exchanged)[:shown]
-        series["heat"] += heat + _content(system, reference)
-        series["heat_exchanged"] += exchanged
-        series["heat_ledger"] += (heat - begin) - exchanged
-        share = system.density * float(system.geometry.volume.sum()) * value(system.alpha, system.start)
-        series["temperature.mean"] += share * (np.array(trace.mean)[:shown] + system.zero)
-        capacity += share
-        least.append(np.array(trace.least)[:shown] + system.zero)
-        most.append(np.array(trace.most)[:shown] + system.zero)
-        crossings |= {(name, level): t for (name, level), t in zip([x for x in thresholds if names.index(x[0]) in mine], trace.crossings, strict=True)}
-    series["temperature.mean"] /= capacity
-    series["temperature.min"], series["temperature.max"] = np.min(least, axis=0), np.max(most, axis=0)
-    worst = next((trace for _, _, trace, _ in parts if trace.code != COMPLETED), parts[-1][2])
-    steps, rejected = sum(p[2].steps for p in parts), sum(p[2].rejected for p in parts)
-    facts = {
-        "heat_method": sorted({type(p[1]).__name__ for p in parts}),
-        "heat_steps": steps,
-        "heat_steps_rejected": rejected,
-        "smallest_step": min(p[2].smallest for p in parts),
-        "largest_step": max(p[2].largest for p in parts),
-        "beta_h_over_kappa": max(p[0].stiff for p in parts),
-        "beyond": [beyond(system, trace) for system, _, trace, _ in parts],
-    }
-    limits = {"euler": min(2 / p[1].radius for p in parts if p[1].radius > 0)} if any(p[1].radius > 0 for p in parts) else {}
-    unknowns = sum(int(p[0].geometry.active.sum()) for p in parts)
-    failed = worst.code != COMPLETED
-    result = outcome(worst.code, time=worst.time if failed else None, step=worst.steps if failed else -1, detail=worst.found)
-    if worst.code == MAX_PRINCIPLE:
-        result = replace(result, advice=ADVICE)
-    return RigidRun(result, times[:shown], series, crossings, steps, rejected, unknowns, time.perf_counter() - start, facts, limits, snapshots, run_bodies)

@@ -70,11 +70,12 @@ def law(given):
     return Constant(float(given)) if isinstance(given, int | float) else given
 
 
-def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False) -> System:
-    """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps."""
+def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False, others: tuple = ()) -> System:
+    """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps; `others`: shapes that touch it."""
     kappa, alpha = law(body.kappa), law(body.alpha)
     sides = tuple(entry[0] for entry in (*body.surfaces, *body.fluxes, *body.radiation))
-    shaped = (hat_geometry if hats else geometry)(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides)
+    place = body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides
+    shaped = (hat_geometry if hats else geometry)(*place, others)
     n = len(body.surfaces)
     betas = [float(beta) for _, beta, _ in body.surfaces]
     around = [outside for _, beta, outside in body.surfaces if beta > 0] + [sky for _, emissivity, sky in body.radiation if emissivity > 0]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mpm.jit import kernel
+from mpm.jit import kernel, role
 from mpm.materials.roles import enthalpy, temperature_of, value
 
 PIECES, MOST, CLOSE = 512, 1 << 14, 1e-9
@@ -26,6 +26,42 @@ class Table(NamedTuple):
     potential: np.ndarray  # (n + 2, 4) the same for Pi [W/m]
     steepest: float  # largest d theta/d h [kg K/J]
     conductivity: float  # largest kappa [W/(m K)]
+
+
+class Tables(NamedTuple):
+    """Of several bodies B: node i looks in the table of the body which[i]. What is behind a shorter table repeats its end."""
+
+    which: np.ndarray  # (N,)
+    start: np.ndarray  # (B,) as Table
+    per: np.ndarray  # (B,)
+    top: np.ndarray  # (B,) number of the last piece
+    theta: np.ndarray  # (B, n + 2, 4)
+    potential: np.ndarray  # (B, n + 2, 4)
+    steepest: float
+    conductivity: float
+
+
+@role(inline=True)
+def piece(table, i, h):
+    """Of node i at enthalpy h: place in a piece of its table, the piece's coefficients of theta and of Pi, pieces a J/kg."""
+    raise TypeError(f"no table {type(table).__name__}")
+
+
+@piece.register(Table)
+def _(table, i, h):
+    s = (h - table.start) * table.per
+    k = min(max(int(np.floor(s)) + 1, 0), len(table.theta) - 1)
+    c, p = table.theta, table.potential
+    return s - (k - 1), (c[k, 0], c[k, 1], c[k, 2], c[k, 3]), (p[k, 0], p[k, 1], p[k, 2], p[k, 3]), table.per
+
+
+@piece.register(Tables)
+def _(table, i, h):
+    b = table.which[i]
+    s = (h - table.start[b]) * table.per[b]
+    k = min(max(int(np.floor(s)) + 1, 0), table.top[b])
+    c, p = table.theta, table.potential
+    return s - (k - 1), (c[b, k, 0], c[b, k, 1], c[b, k, 2], c[b, k, 3]), (p[b, k, 0], p[b, k, 1], p[b, k, 2], p[b, k, 3]), table.per[b]
 
 
 @kernel
@@ -87,27 +123,19 @@ def make_table(alpha, kappa, zero: float, coldest: float, hottest: float) -> Tab
 @kernel
 def look_up(table, h, theta, potential, slope, conductance):
     """theta - zero, Pi, d theta/d h and d Pi/d h at enthalpies h (N,), into the four arrays."""
-    top = len(table.theta) - 1
     for i in range(len(h)):
-        s = (h[i] - table.start) * table.per
-        k = min(max(int(np.floor(s)) + 1, 0), top)
-        t = s - (k - 1)
-        c, p = table.theta[k], table.potential[k]
+        t, c, p, per = piece(table, i, h[i])
         theta[i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
-        slope[i] = (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])) * table.per
+        slope[i] = (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])) * per
         potential[i] = p[0] + t * (p[1] + t * (p[2] + t * p[3]))
-        conductance[i] = (p[1] + t * (2.0 * p[2] + t * 3.0 * p[3])) * table.per
+        conductance[i] = (p[1] + t * (2.0 * p[2] + t * 3.0 * p[3])) * per
 
 
 @kernel
 def temperatures(table, h):
     """theta - zero at enthalpies h (N,)."""
     out = np.empty(len(h))
-    top = len(table.theta) - 1
     for i in range(len(h)):
-        s = (h[i] - table.start) * table.per
-        k = min(max(int(np.floor(s)) + 1, 0), top)
-        t = s - (k - 1)
-        c = table.theta[k]
+        t, c, _, _ = piece(table, i, h[i])
         out[i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
     return out

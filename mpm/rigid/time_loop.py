@@ -23,6 +23,36 @@ from mpm.rigid.ordered import combined, dot
 SAFETY, GROW, SHRINK, FEWEST = 0.8, 6.0, 0.2, 1e-12
 
 
+class Whole:
+    """What is told of the whole of one body."""
+
+    def mean(self, weight, theta):
+        return dot(weight, theta) / weight.sum()
+
+    def least(self, seen):
+        return seen.min()
+
+    def most(self, seen):
+        return seen.max()
+
+
+@dataclass
+class Shares:
+    """What is told of each of several bodies (B,): by sums over their nodes, and where in the sight each begins."""
+
+    sums: object  # (N,) -> (B,)
+    begins: np.ndarray  # (B,)
+
+    def mean(self, weight, theta):
+        return self.sums(weight * theta) / self.sums(weight)
+
+    def least(self, seen):
+        return np.minimum.reduceat(seen, self.begins)
+
+    def most(self, seen):
+        return np.maximum.reduceat(seen, self.begins)
+
+
 @dataclass
 class Watch:
     """What is looked at: output times, probes (nodes, values), thresholds (probe, temperature less zero)."""
@@ -35,11 +65,12 @@ class Watch:
     stop: object = None  # stop(fraction, time) -> whether to stop
     keeper: object = None  # mpm.memory
     limits: tuple[float, float] = (-math.inf, math.inf)  # of theta - zero, beyond which a record ends the run [K]
+    told: object = field(default_factory=Whole)  # or Shares
 
 
 @dataclass
 class Trace:
-    """What was seen. Arrays a time: probes (T, P), mean, min, max of theta - zero [K]; heat, exchanged [J]."""
+    """What was seen. Arrays a time: probes (T, P), mean, min, max of theta - zero [K]; heat, exchanged [J]; of several bodies an array a time."""
 
     probes: list = field(default_factory=list)
     mean: list = field(default_factory=list)
@@ -78,9 +109,9 @@ def record(trace, watch, method, states, exchanged, weight):
         theta = method.temperature(state)
         seen = interpolate(*watch.sight, theta)
         trace.probes.append(interpolate(*watch.probes, theta))
-        trace.mean.append(dot(weight, theta) / weight.sum())
-        trace.least.append(seen.min())
-        trace.most.append(seen.max())
+        trace.mean.append(watch.told.mean(weight, theta))
+        trace.least.append(watch.told.least(seen))
+        trace.most.append(watch.told.most(seen))
         trace.heat.append(method.heat(state))
         trace.exchanged.append(q)
 
@@ -89,7 +120,7 @@ def judge(trace, watch, zero: float, before: int) -> None:
     """Drops the rows from the first on, after `before` of them, whose temperatures are not finite or beyond the limits, and says so in the trace."""
     low, high = watch.limits
     for row in range(before, len(trace.heat)):
-        least, most = trace.least[row], trace.most[row]
+        least, most = np.min(trace.least[row]), np.max(trace.most[row])
         if low < least and most < high:
             continue
         trace.code = MAX_PRINCIPLE if math.isfinite(least + most) else NON_FINITE
@@ -107,7 +138,7 @@ def crossing(method, watch, before, t, dt, probe, level):
 
     def above(s):
         basis, columns, _ = method.dense(np.array([s]))
-        return dot(value, method.temperature(before[index] + combined(basis, columns[:, index])[0])) - level
+        return dot(value, method.temperature(before + combined(basis, columns)[0])[index]) - level
 
     low, high = above(0.0), above(1.0)
     return t + dt * brentq(above, 0.0, 1.0, xtol=1e-12) if low * high < 0 else t + dt
@@ -117,7 +148,7 @@ def begun(method, watch: Watch, ahead, weight) -> tuple:
     """The start of a run: (trace, time, outputs shown, snapshots shown, temperatures at the probes)."""
     trace, state = Trace(crossings=[math.nan] * len(watch.thresholds)), method.state
     first = int(np.searchsorted(ahead, 0.0, side="right"))
-    record(trace, watch, method, [state] * first, [0.0] * first, weight)
+    record(trace, watch, method, [state] * first, [method.q] * first, weight)
     shown = int(np.searchsorted(watch.shots[0], 0.0, side="right"))
     trace.shots += [interpolate(*watch.shots[1:], method.temperature(state))] * shown
     seen = interpolate(*watch.probes, method.temperature(state))

@@ -30,7 +30,7 @@ def physics(experiment) -> dict[str, list[str]]:
 
 
 def pairs(experiment) -> list[str]:
-    """How every two bodies that move meet; their number where they are more than MANY."""
+    """How every two bodies that move meet, or touch where none moves; their number where they are more than MANY."""
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
     moving = [name for name, body in experiment.bodies.items() if experiment.materials[body.material].elastic is not None]
     found = []
@@ -41,7 +41,21 @@ def pairs(experiment) -> list[str]:
         free = pair is None or pair.conductance in (None, math.inf)
         passes = "and pass heat freely" if free else f"and pass heat ({pair.conductance:g} W/m2K)" if pair.conductance else "without heat"
         found.append(f"contact: {two[0]} and {two[1]} {slides}{' ' + passes if warm else ''}{'' if pair else ' (not named)'}")
+    if not moving and len(experiment.bodies) > 1 and experiment.grid.dimension != 0:
+        found = at_rest(experiment, known)
     return found if len(found) <= MANY else [f"contact: {len(found)} pairs of bodies, {len(known)} of them named"]
+
+
+def at_rest(experiment, known) -> list[str]:
+    """What passes between bodies that do not move and touch."""
+    from mpm.scene.still import joints
+
+    names, found = list(experiment.bodies), []
+    for joint in joints(experiment):
+        two, H = (names[joint.first], names[joint.second]), joint.conductance
+        passes = "pass heat freely" if math.isinf(H) else f"pass heat ({H:g} W/m2K)" if H else "pass no heat"
+        found.append(f"contact: {two[0]} and {two[1]} touch and {passes}{'' if frozenset(two) in known else ' (not named)'}")
+    return found
 
 
 def ticks(end: float, every: float) -> int:

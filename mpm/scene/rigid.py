@@ -12,6 +12,7 @@ from mpm.scene.exchange import must_conduct, programme, robin
 from mpm.scene.law import law
 from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.still import joints, refuse_covered
 from mpm.state import Run
 from mpm.warned import warning
 
@@ -58,9 +59,12 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     levels = [(at.probe, at.kelvin) for at in found.values()]
     look = Looks(experiment, times, exact if compare else None)
     field = (lambda x: exact(x + shift, 0.0)) if getattr(exact, "starts", False) else None
-    bodies, end, probes = rigid_bodies(experiment, field), experiment.time.end, experiment.output.probes
+    bodies, end, probes, together = rigid_bodies(experiment, field), experiment.time.end, experiment.output.probes, joints(experiment)
+    refuse_covered(experiment, [body.shape for body in bodies], together)
+    if field is not None and together:
+        raise SceneError("exact: it sets the temperatures at the start, which is not known of bodies that touch")
     shots = look.times, look.points
-    solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=shots, keeper=keeper)
+    solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=shots, keeper=keeper, joints=together)
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots, shift, len(solved.times))

@@ -13,6 +13,7 @@ from mpm.verification import (
     gaussian_box,
     hencky_bar,
     hydrostatic_column,
+    layers,
     lumped_cooling,
     manufactured,
     nafems_t3,
@@ -49,6 +50,7 @@ EXACT = {
     "nafems_t4": nafems_t4.exact,
     "gaussian_box": gaussian_box.exact,
     "stefan": stefan.exact,
+    "layers": layers.exact,
     "cooks_membrane": cooks_membrane.exact,
 }
 

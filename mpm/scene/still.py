@@ -1,0 +1,64 @@
+"""Bodies that do not move: which of them touch, and what conducts between them. Perfect contact where a pair is not named."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+
+from mpm.scene.refusal import SceneError
+from mpm.scene.shapes import on_side, shape
+
+
+def joints(experiment) -> tuple:
+    """mpm.rigid.group.Joint of every two bodies that touch. SceneError for overlap, contacts of bodies apart, and contact with what conducts nothing."""
+    from mpm.rigid.group import Joint
+    from mpm.rigid.touching import touch
+    from mpm.scene.meeting import refuse_overlap
+
+    names, h = list(experiment.bodies), experiment.grid.cell
+    if len(names) < 2:
+        return ()
+    outlines = [shape(body.shape, experiment.grid.dimension) for body in experiment.bodies.values()]
+    refuse_overlap(experiment, names, outlines, [outline.bounds() for outline in outlines])
+    named = {frozenset(pair.between): (index, pair.conductance) for index, pair in enumerate(experiment.contacts)}
+    found = []
+    for (a, one), (b, two) in combinations(enumerate(outlines), 2):
+        index, given = named.get(frozenset((names[a], names[b])), (None, None))
+        if touch(one, two, h):
+            found.append(Joint(a, b, math.inf if given is None else given))
+        elif index is not None:
+            raise SceneError(f"contacts[{index}]: {names[a]} and {names[b]} do not touch, so no heat can pass: let faces of theirs meet, or leave the pair out")
+    refuse(experiment, names, [joint for joint in found if joint.conductance > 0])
+    return tuple(found)
+
+
+def refuse(experiment, names, conducting) -> None:
+    """SceneError where bodies conduct into one another, and the method or a material cannot."""
+    kind = type(experiment.method.rigid).kind
+    for joint in conducting:
+        both = f"{names[joint.first]} and {names[joint.second]} touch and pass heat"
+        cure = f"contacts: [{{between: [{names[joint.first]}, {names[joint.second]}], conductance: 0}}]"
+        if kind in ("explicit", "bounded"):
+            raise SceneError(f"method.rigid: {both}, which takes implicit steps: auto or implicit, not {kind}; or keep them apart by {cure}")
+        for material in (experiment.bodies[names[b]].material for b in (joint.first, joint.second)):
+            kappa = experiment.materials[material].heat.kappa
+            if type(kappa).kind == "constant" and kappa.value == 0:
+                raise SceneError(f"materials.{material}.heat: {both}, and kappa is 0: give it a conductivity; or keep them apart by {cure}")
+
+
+def refuse_covered(experiment, outlines, found) -> None:
+    """SceneError for an exchange of a side that other bodies cover from end to end."""
+    from mpm.rigid.touching import covered, lines_of, surface_beside
+
+    names, h = list(experiment.bodies), experiment.grid.cell
+    for b, name in enumerate(names):
+        others = tuple(outlines[j.second if j.first == b else j.first] for j in found if b in (j.first, j.second))
+        entries = [(index, entry) for index, entry in enumerate(experiment.surfaces) if entry.of == name]
+        if not others or not entries:
+            continue
+        lines = [lines_of(outlines[b], h, k) for k in range(outlines[b].dimension)]
+        x, _, normal, _ = surface_beside(outlines[b], others, lines, 2, h)
+        bare = ~covered(x, normal, others, h)
+        for index, entry in entries:
+            if not np.any(bare & on_side(normal, entry.side)):
+                raise SceneError(f"surfaces[{index}]: other bodies cover side {entry.side!r} of {name}, and nothing is exchanged there: leave the entry out")
