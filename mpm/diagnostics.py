@@ -21,19 +21,19 @@ def principal(space, B, i):
 
 
 @principal.register(Line)
-def _(space, B, i):
+def principal_line(space, B, i):
     return 0.5 * math.log1p(B[i, 0]), 0.5 * math.log1p(B[i, 1]), 0.5 * math.log1p(B[i, 2])
 
 
 @principal.register(Plane)
 @principal.register(Axisymmetric)
-def _(space, B, i):
+def principal_axisymmetric_or_plane(space, B, i):
     l1, l2, _, _ = eigen2(B[i, 0], B[i, 1], B[i, 3])
     return 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(B[i, 2])
 
 
 @principal.register(Volume)
-def _(space, B, i):
+def principal_volume(space, B, i):
     values = eigen3(B[i, 0], B[i, 1], B[i, 2], B[i, 3], B[i, 4], B[i, 5])
     return 0.5 * math.log1p(values[0]), 0.5 * math.log1p(values[1]), 0.5 * math.log1p(values[2])
 

@@ -28,7 +28,7 @@ def slopes(f):
 
 
 @stencil.register(Cubic)
-def _(basis, s):
+def stencil_cubic(basis, s):
     left = np.floor(s)
     f = s - left
     w = weights(f)
@@ -37,15 +37,15 @@ def _(basis, s):
 
 
 @second_moment.register(Cubic)
-def _(basis, s):
+def second_moment_cubic(basis, s):
     return THIRD
 
 
 @inverse_moment.register(Cubic)
-def _(basis):
+def inverse_moment_cubic(basis):
     return 3.0
 
 
 @room.register(Cubic)
-def _(basis):
+def room_cubic(basis):
     return 1.1

@@ -15,23 +15,23 @@ from mpm.state import PAD, Linear
 
 
 @stencil.register(Linear)
-def _(basis, s):
+def stencil_linear(basis, s):
     left = np.floor(s)
     f = s - left
     return int(left) + PAD, (1.0 - f, f), (-1.0, 1.0), (-f, 1.0 - f), (-1.0, 1.0)
 
 
 @second_moment.register(Linear)
-def _(basis, s):
+def second_moment_linear(basis, s):
     f = s - np.floor(s)
     return f * (1.0 - f)
 
 
 @inverse_moment.register(Linear)
-def _(basis):
+def inverse_moment_linear(basis):
     return math.nan  # mpm.scene.build takes the B-spline gradient, which is the same
 
 
 @room.register(Linear)
-def _(basis):
+def room_linear(basis):
     return 0.1

@@ -27,7 +27,7 @@ def slopes(f):
 
 
 @stencil.register(Quadratic)
-def _(basis, s):
+def stencil_quadratic(basis, s):
     nearest = np.floor(s + 0.5)
     f = s - nearest
     w = weights(f)
@@ -36,15 +36,15 @@ def _(basis, s):
 
 
 @second_moment.register(Quadratic)
-def _(basis, s):
+def second_moment_quadratic(basis, s):
     return SECOND_MOMENT
 
 
 @inverse_moment.register(Quadratic)
-def _(basis):
+def inverse_moment_quadratic(basis):
     return 4.0
 
 
 @room.register(Quadratic)
-def _(basis):
+def room_quadratic(basis):
     return 0.6

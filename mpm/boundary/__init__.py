@@ -29,32 +29,32 @@ def directions(space):
 
 
 @extents.register(Line)
-def _(space):
+def extents_line(space):
     return space.n0, 1, 1
 
 
 @extents.register(Plane)
 @extents.register(Axisymmetric)
-def _(space):
+def extents_axisymmetric_or_plane(space):
     return space.n0, space.n1, 1
 
 
 @extents.register(Volume)
-def _(space):
+def extents_volume(space):
     return space.n0, space.n1, space.n2
 
 
 @directions.register(Line)
-def _(space):
+def directions_line(space):
     return 1
 
 
 @directions.register(Plane)
 @directions.register(Axisymmetric)
-def _(space):
+def directions_axisymmetric_or_plane(space):
     return 2
 
 
 @directions.register(Volume)
-def _(space):
+def directions_volume(space):
     return 3

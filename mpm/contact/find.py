@@ -108,12 +108,12 @@ def find_lone(surface, space, body, b, stops, found, count):
 
 
 @find_lone.register(NoExchange)
-def _(surface, space, body, b, stops, found, count):
+def find_lone_no_exchange(surface, space, body, b, stops, found, count):
     return count
 
 
 @find_lone.register(Surface)
-def _(surface, space, body, b, stops, found, count):
+def find_lone_surface(surface, space, body, b, stops, found, count):
     D, x, place = directions(space), body.particles.x, np.empty(directions(space))
     for axis in range(D):
         for side in range(2):

@@ -50,12 +50,12 @@ def lay_skin(surface, space, body, skin, first):
 
 
 @lay_skin.register(NoExchange)
-def _(surface, space, body, skin, first):
+def lay_skin_no_exchange(surface, space, body, skin, first):
     return None
 
 
 @lay_skin.register(Surface)
-def _(surface, space, body, skin, first):
+def lay_skin_surface(surface, space, body, skin, first):
     D, x, J = directions(space), body.particles.x, body.particles.J
     for s in range(surface.owner.shape[0]):
         p, k = surface.owner[s], first + s

@@ -26,12 +26,12 @@ def hoop(space):
 @hoop.register(Line)
 @hoop.register(Plane)
 @hoop.register(Volume)
-def _(space):
+def hoop_volume_or_plane_or_line(space):
     return False
 
 
 @hoop.register(Axisymmetric)
-def _(space):
+def hoop_axisymmetric(space):
     return True
 
 

@@ -22,12 +22,12 @@ def meet(surface, s, theta, zero, part):
 
 
 @meet.register(NoExchange)
-def _(surface, s, theta, zero, part):
+def meet_no_exchange(surface, s, theta, zero, part):
     return 0.0, 0.0, 0.0
 
 
 @meet.register(Surface)
-def _(surface, s, theta, zero, part):
+def meet_surface(surface, s, theta, zero, part):
     beta, outside = radiate(surface.radiation, s, theta, zero, part, surface.beta[s], surface.outside[s] + part * surface.drift[s])
     return beta, outside, surface.flux[s]
 
@@ -39,12 +39,12 @@ def radiate(radiation, s, theta, zero, part, beta, outside):
 
 
 @radiate.register(NoRadiation)
-def _(radiation, s, theta, zero, part, beta, outside):
+def radiate_no_radiation(radiation, s, theta, zero, part, beta, outside):
     return beta, outside
 
 
 @radiate.register(Radiation)
-def _(radiation, s, theta, zero, part, beta, outside):
+def radiate_radiation(radiation, s, theta, zero, part, beta, outside):
     T, sky = zero + theta, radiation.sky[s] + part * radiation.drift[s]
     own = STEFAN_BOLTZMANN * radiation.emissivity[s] * (T * T + sky * sky) * (T + sky)
     both = beta + own

@@ -17,7 +17,7 @@ def rises(alpha, theta, heat):
 
 
 @rises.register(Constant)
-def _(alpha, theta, heat):
+def rises_constant(alpha, theta, heat):
     return heat / alpha.constant
 
 
@@ -62,12 +62,12 @@ def grow_warmer(thermal, i, rise):
 
 
 @grow_warmer.register(Isothermal)
-def _(thermal, i, rise):
+def grow_warmer_isothermal(thermal, i, rise):
     return None
 
 
 @grow_warmer.register(Thermal)
-def _(thermal, i, rise):
+def grow_warmer_thermal(thermal, i, rise):
     thermal.theta[i] += rise
 
 
@@ -78,18 +78,18 @@ def heat_eight(heating, thermal, theta, density, stretched, dissipated):
 
 
 @heat_eight.register(NoHeating)
-def _(heating, thermal, theta, density, stretched, dissipated):
+def heat_eight_no_heating(heating, thermal, theta, density, stretched, dissipated):
     return like(theta, 0.0), like(theta, 0.0)
 
 
 @heat_eight.register(Heating)
-def _(heating, thermal, theta, density, stretched, dissipated):
+def heat_eight_heating(heating, thermal, theta, density, stretched, dissipated):
     capacity = density * values(thermal.alpha, theta)
     gained = capacity * theta * expm1(stretched * (-heating.gamma / capacity)) + heating.fraction * dissipated
     return gained, rises(thermal.alpha, theta, gained / density)
 
 
 @heat_eight.register(GridHeating)
-def _(heating, thermal, theta, density, stretched, dissipated):
+def heat_eight_grid_heating(heating, thermal, theta, density, stretched, dissipated):
     gained = heating.fraction * dissipated
     return gained, rises(thermal.alpha, theta, gained / density)

@@ -21,7 +21,7 @@ def rise(alpha, theta, heat):
 
 
 @rise.register(Constant)
-def _(alpha, theta, heat):
+def rise_constant(alpha, theta, heat):
     return heat / alpha.constant
 
 
@@ -41,12 +41,12 @@ def temperature(thermal, i):
 
 
 @temperature.register(Isothermal)
-def _(thermal, i):
+def temperature_isothermal(thermal, i):
     return thermal.temperature
 
 
 @temperature.register(Thermal)
-def _(thermal, i):
+def temperature_thermal(thermal, i):
     return thermal.zero + thermal.theta[i]
 
 
@@ -57,22 +57,22 @@ def thermal_stress(expansion, thermal, i):
 
 
 @thermal_stress.register(NoExpansion)
-def _(expansion, thermal, i):
+def thermal_stress_no_expansion(expansion, thermal, i):
     return 0.0
 
 
 @thermal_stress.register(Expansion)
-def _(expansion, thermal, i):
+def thermal_stress_expansion(expansion, thermal, i):
     return expansion.gamma * (thermal.theta[i] + expansion.shift)
 
 
 @thermal_stress.register(Latched)
-def _(expansion, thermal, i):
+def thermal_stress_latched(expansion, thermal, i):
     return expansion.gamma * (max(expansion.most[i], min(thermal.theta[i], expansion.set)) + expansion.shift)
 
 
 @thermal_stress.register(Softening)
-def _(expansion, thermal, i):
+def thermal_stress_softening(expansion, thermal, i):
     return value(expansion.E, temperature(thermal, i)) * thermal_stress(expansion.inner, thermal, i)
 
 
@@ -84,17 +84,17 @@ def latch(expansion, thermal, i):
 
 @latch.register(NoExpansion)
 @latch.register(Expansion)
-def _(expansion, thermal, i):
+def latch_expansion_or_no_expansion(expansion, thermal, i):
     return None
 
 
 @latch.register(Latched)
-def _(expansion, thermal, i):
+def latch_latched(expansion, thermal, i):
     expansion.most[i] = max(expansion.most[i], min(thermal.theta[i], expansion.set))
 
 
 @latch.register(Softening)
-def _(expansion, thermal, i):
+def latch_softening(expansion, thermal, i):
     latch(expansion.inner, thermal, i)
 
 
@@ -105,12 +105,12 @@ def heat_locally(heating, thermal, i, density, stretched, dissipated):
 
 
 @heat_locally.register(NoHeating)
-def _(heating, thermal, i, density, stretched, dissipated):
+def heat_locally_no_heating(heating, thermal, i, density, stretched, dissipated):
     return 0.0
 
 
 @heat_locally.register(Heating)
-def _(heating, thermal, i, density, stretched, dissipated):
+def heat_locally_heating(heating, thermal, i, density, stretched, dissipated):
     theta = thermal.zero + thermal.theta[i]
     alpha = value(thermal.alpha, theta)
     gained = density * alpha * theta * math.expm1(-heating.gamma / (density * alpha) * stretched) + heating.fraction * dissipated
@@ -119,7 +119,7 @@ def _(heating, thermal, i, density, stretched, dissipated):
 
 
 @heat_locally.register(GridHeating)
-def _(heating, thermal, i, density, stretched, dissipated):
+def heat_locally_grid_heating(heating, thermal, i, density, stretched, dissipated):
     theta = thermal.zero + thermal.theta[i]
     gained = heating.fraction * dissipated
     thermal.theta[i] += rise(thermal.alpha, theta, gained / density)

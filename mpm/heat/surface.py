@@ -15,14 +15,14 @@ def area_and_offset(space, F, row, J, A, D, s, offset):
 
 
 @area_and_offset.register(Line)
-def _(space, F, row, J, A, D, s, offset):
+def area_and_offset_line(space, F, row, J, A, D, s, offset):
     offset[0, 0] = F[row, 0, 0] * D[s, 0]
     return abs(A[s, 0])
 
 
 @area_and_offset.register(Plane)
 @area_and_offset.register(Axisymmetric)
-def _(space, F, row, J, A, D, s, offset):
+def area_and_offset_axisymmetric_or_plane(space, F, row, J, A, D, s, offset):
     F00, F01, F10, F11 = F[row, 0, 0], F[row, 0, 1], F[row, 1, 0], F[row, 1, 1]
     offset[0, 0] = F00 * D[s, 0] + F01 * D[s, 1]
     offset[1, 0] = F10 * D[s, 0] + F11 * D[s, 1]
@@ -32,7 +32,7 @@ def _(space, F, row, J, A, D, s, offset):
 
 
 @area_and_offset.register(Volume)
-def _(space, F, row, J, A, D, s, offset):
+def area_and_offset_volume(space, F, row, J, A, D, s, offset):
     f = F[row]
     for a in range(3):
         offset[a, 0] = f[a, 0] * D[s, 0] + f[a, 1] * D[s, 1] + f[a, 2] * D[s, 2]

@@ -18,12 +18,12 @@ def take_up(thermal, i, joule):
 
 
 @take_up.register(Isothermal)
-def _(thermal, i, joule):
+def take_up_isothermal(thermal, i, joule):
     return 0.0
 
 
 @take_up.register(Thermal)
-def _(thermal, i, joule):
+def take_up_thermal(thermal, i, joule):
     thermal.theta[i] += rise(thermal.alpha, thermal.zero + thermal.theta[i], joule)
     return joule
 
@@ -35,12 +35,12 @@ def act(source, body, chunk, first, count, dt, next_dt, report):
 
 
 @act.register(NoSource)
-def _(source, body, chunk, first, count, dt, next_dt, report):
+def act_no_source(source, body, chunk, first, count, dt, next_dt, report):
     return None
 
 
 @act.register(Source)
-def _(source, body, chunk, first, count, dt, next_dt, report):
+def act_source(source, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
     for p in range(count):
         i = first + p

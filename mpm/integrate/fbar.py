@@ -35,24 +35,24 @@ def grown(space, x, i, chunk, p, dt):
 
 
 @grown.register(Line)
-def _(space, x, i, chunk, p, dt):
+def grown_line(space, x, i, chunk, p, dt):
     return dilation1((dt * chunk.L[0, 0, p],))
 
 
 @grown.register(Plane)
-def _(space, x, i, chunk, p, dt):
+def grown_plane(space, x, i, chunk, p, dt):
     L = chunk.L
     return dilation2((dt * L[0, 0, p], dt * L[0, 1, p], dt * L[1, 0, p], dt * L[1, 1, p], 0.0))
 
 
 @grown.register(Axisymmetric)
-def _(space, x, i, chunk, p, dt):
+def grown_axisymmetric(space, x, i, chunk, p, dt):
     L = chunk.L
     return dilation2((dt * L[0, 0, p], dt * L[0, 1, p], dt * L[1, 0, p], dt * L[1, 1, p], dt * chunk.v[0, p] / x[i, 0]))
 
 
 @grown.register(Volume)
-def _(space, x, i, chunk, p, dt):
+def grown_volume(space, x, i, chunk, p, dt):
     return dilation3(increment3(chunk.L, p, dt))
 
 
@@ -79,12 +79,12 @@ def averages(locking):
 
 
 @averages.register(NoAverage)
-def _(locking):
+def averages_no_average(locking):
     return False
 
 
 @averages.register(Average)
-def _(locking):
+def averages_average(locking):
     return True
 
 
@@ -95,12 +95,12 @@ def average(locking, space, gradient, body, chunk, nodes, box, walls, dt):
 
 
 @average.register(NoAverage)
-def _(locking, space, gradient, body, chunk, nodes, box, walls, dt):
+def average_no_average(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     return None
 
 
 @average.register(Average)
-def _(locking, space, gradient, body, chunk, nodes, box, walls, dt):
+def average_average(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     x, V0, J = body.particles.x, body.particles.V0, body.particles.J
     D, shape = directions(space), extents(space)
     total, volume = locking.change, locking.volume
@@ -133,12 +133,12 @@ def relax(locking, space, x, first, chunk, count, dt):
 
 
 @relax.register(NoAverage)
-def _(locking, space, x, first, chunk, count, dt):
+def relax_no_average(locking, space, x, first, chunk, count, dt):
     return None
 
 
 @relax.register(Average)
-def _(locking, space, x, first, chunk, count, dt):
+def relax_average(locking, space, x, first, chunk, count, dt):
     D, at, unused = directions(space), chunk.e[0], chunk.S[0]  # rows that are filled after this: what passes over a chunk makes no arrays
     gather_scalar(space, x, first, count, locking.change, at, unused, unused)
     for p in range(count):

@@ -30,22 +30,22 @@ def divergence(space, x, i, chunk, p):
 
 
 @divergence.register(Line)
-def _(space, x, i, chunk, p):
+def divergence_line(space, x, i, chunk, p):
     return chunk.L[0, 0, p]
 
 
 @divergence.register(Plane)
-def _(space, x, i, chunk, p):
+def divergence_plane(space, x, i, chunk, p):
     return chunk.L[0, 0, p] + chunk.L[1, 1, p]
 
 
 @divergence.register(Axisymmetric)
-def _(space, x, i, chunk, p):
+def divergence_axisymmetric(space, x, i, chunk, p):
     return chunk.L[0, 0, p] + chunk.L[1, 1, p] + chunk.v[0, p] / x[i, 0]
 
 
 @divergence.register(Volume)
-def _(space, x, i, chunk, p):
+def divergence_volume(space, x, i, chunk, p):
     return chunk.L[0, 0, p] + chunk.L[1, 1, p] + chunk.L[2, 2, p]
 
 
@@ -66,12 +66,12 @@ def compress(heating, space, gradient, body, chunk, nodes, box, walls, dt, repor
 
 @compress.register(NoHeating)
 @compress.register(Heating)
-def _(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
+def compress_heating_or_no_heating(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
     return None
 
 
 @compress.register(GridHeating)
-def _(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
+def compress_grid_heating(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
     x, m, V0, thermal = body.particles.x, body.particles.m, body.particles.V0, body.thermal
     D, shape = directions(space), extents(space)
     heat, capacity = heating.rise, heating.capacity

@@ -49,12 +49,12 @@ def advance_stabilised(thermal, space, body, nodes, walls, dt, count, blend, aff
 
 
 @advance_stabilised.register(Isothermal)
-def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
+def advance_stabilised_isothermal(thermal, space, body, nodes, walls, dt, count, blend, affine):
     return 0.0
 
 
 @advance_stabilised.register(Thermal)
-def _(thermal, space, body, nodes, walls, dt, count, blend, affine):
+def advance_stabilised_thermal(thermal, space, body, nodes, walls, dt, count, blend, affine):
     return stabilised_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, count, blend, affine)
 
 
@@ -90,7 +90,7 @@ def recurrence(count):
 
 
 @stabilised_by_law.register(Constant)
-def _(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
+def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
     shape, x = extents(space), body.particles.x
     box = reach(space, x)
     capacity, start, rate, first, before, last, theta = nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6]

@@ -40,12 +40,12 @@ def advance_implicit(thermal, space, body, nodes, walls, dt, order, tolerance, b
 
 
 @advance_implicit.register(Isothermal)
-def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def advance_implicit_isothermal(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
     return 0.0, 0
 
 
 @advance_implicit.register(Thermal)
-def _(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def advance_implicit_thermal(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
     return implicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
 
 
@@ -56,7 +56,7 @@ def implicit_by_law(alpha, thermal, space, body, nodes, walls, dt, order, tolera
 
 
 @implicit_by_law.register(Constant)
-def _(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
     shape = extents(space)
     x = body.particles.x
     box = reach(space, x)

@@ -37,7 +37,7 @@ def nodes_of(space, x, p, walls, at, w, g, d):
 
 
 @nodes_of.register(Line)
-def _(space, x, p, walls, at, w, g, d):
+def nodes_of_line(space, x, p, walls, at, w, g, d):
     i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
     for i in range(len(wx)):
         at[0, i] = image(i0 + i, space.n0, walls[0, 0], walls[0, 1])
@@ -46,7 +46,7 @@ def _(space, x, p, walls, at, w, g, d):
 
 @nodes_of.register(Plane)
 @nodes_of.register(Axisymmetric)
-def _(space, x, p, walls, at, w, g, d):
+def nodes_of_axisymmetric_or_plane(space, x, p, walls, at, w, g, d):
     i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
     j0, wy, gy, dy, _ = stencil(space.basis, x[p, 1] / space.h)
     m = 0
@@ -59,7 +59,7 @@ def _(space, x, p, walls, at, w, g, d):
 
 
 @nodes_of.register(Volume)
-def _(space, x, p, walls, at, w, g, d):
+def nodes_of_volume(space, x, p, walls, at, w, g, d):
     i0, wx, gx, dx, _ = stencil(space.basis, x[p, 0] / space.h)
     j0, wy, gy, dy, _ = stencil(space.basis, x[p, 1] / space.h)
     k0, wz, gz, dz, _ = stencil(space.basis, x[p, 2] / space.h)

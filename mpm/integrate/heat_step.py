@@ -38,12 +38,12 @@ def advance_heat(thermal, space, body, nodes, walls, dt, substeps, blend, affine
 
 
 @advance_heat.register(Isothermal)
-def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def advance_heat_isothermal(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     return 0.0
 
 
 @advance_heat.register(Thermal)
-def _(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def advance_heat_thermal(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     return explicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine)
 
 
@@ -54,7 +54,7 @@ def explicit_by_law(alpha, thermal, space, body, nodes, walls, dt, substeps, ble
 
 
 @explicit_by_law.register(Constant)
-def _(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def explicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
     shape = extents(space)
     x, m = body.particles.x, body.particles.m
     box = reach(space, x)

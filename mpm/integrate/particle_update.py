@@ -72,7 +72,7 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
 
 
 @respond.register(Line)
-def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
+def respond_line(space, gradient, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
     for p in range(count):
         i = first + p
@@ -95,7 +95,7 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
 
 
 @respond.register(Plane)
-def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
+def respond_plane(space, gradient, body, chunk, first, count, dt, next_dt, report):
     strain_plane(body.particles, chunk, first, count, dt, report)
     if report[CODE] == 0.0:
         stress_plane(body.elastic, body, chunk, first, count, dt, report)
@@ -103,7 +103,7 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
 
 
 @respond.register(Axisymmetric)
-def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
+def respond_axisymmetric(space, gradient, body, chunk, first, count, dt, next_dt, report):
     x, V0 = body.particles.x, body.particles.V0
     for p in range(count):
         before = x[first + p, 0] - dt * chunk.v[0, p]  # r at which the rates were gathered: the position has moved on already
@@ -117,7 +117,7 @@ def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
 
 
 @respond.register(Volume)
-def _(space, gradient, body, chunk, first, count, dt, next_dt, report):
+def respond_volume(space, gradient, body, chunk, first, count, dt, next_dt, report):
     strain_volume(body.particles, chunk, first, count, dt, report)
     if report[CODE] == 0.0:
         stress_volume(body.elastic, body, chunk, first, count, dt, report)

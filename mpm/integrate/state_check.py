@@ -88,12 +88,12 @@ def tempered(thermal, first, count):
 
 
 @tempered.register(Isothermal)
-def _(thermal, first, count):
+def tempered_isothermal(thermal, first, count):
     return True
 
 
 @tempered.register(Thermal)
-def _(thermal, first, count):
+def tempered_thermal(thermal, first, count):
     D = thermal.c.shape[1]
     return finite(thermal.theta, first, first + count) and finite(thermal.c, first * D, (first + count) * D)
 

@@ -48,7 +48,7 @@ def flows(law):
 
 
 @flows.register(NoFlow)
-def _(law):
+def flows_no_flow(law):
     return False
 
 
@@ -68,13 +68,13 @@ def warms(heating):
 
 
 @warms.register(NoHeating)
-def _(heating):
+def warms_no_heating(heating):
     return False
 
 
 @warms.register(Heating)
 @warms.register(GridHeating)
-def _(heating):
+def warms_grid_heating_or_heating(heating):
     return True
 
 
@@ -85,14 +85,14 @@ def swells(expansion):
 
 
 @swells.register(NoExpansion)
-def _(expansion):
+def swells_no_expansion(expansion):
     return False
 
 
 @swells.register(Expansion)
 @swells.register(Latched)
 @swells.register(Softening)
-def _(expansion):
+def swells_softening_or_latched_or_expansion(expansion):
     return True
 
 
@@ -173,12 +173,12 @@ def carry_surface(surface, chunk, first, count, dt, D):
 
 
 @carry_surface.register(NoExchange)
-def _(surface, chunk, first, count, dt, D):
+def carry_surface_no_exchange(surface, chunk, first, count, dt, D):
     return None
 
 
 @carry_surface.register(Surface)
-def _(surface, chunk, first, count, dt, D):
+def carry_surface_surface(surface, chunk, first, count, dt, D):
     carry_owners(surface.F, surface.row, chunk.L, first, count, dt, D)
 
 
@@ -204,7 +204,7 @@ def size3(d1, d2, d3):
 
 @stress_plane.register(Hencky)
 @stress_plane.register(HenckyWarm)
-def _(elastic, body, chunk, first, count, dt, report):
+def stress_plane_hencky_warm_or_hencky(elastic, body, chunk, first, count, dt, report):
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
     third, lowest, minus = real(1.0 / 3.0), splat8(real(0)), splat8(real(-1))
     for p in range(0, count, EIGHT):
@@ -241,7 +241,7 @@ def _(elastic, body, chunk, first, count, dt, report):
 
 @stress_volume.register(Hencky)
 @stress_volume.register(HenckyWarm)
-def _(elastic, body, chunk, first, count, dt, report):
+def stress_volume_hencky_warm_or_hencky(elastic, body, chunk, first, count, dt, report):
     if not flows(body.flow):
         deliver_volume(body.particles, chunk, first, count)
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type

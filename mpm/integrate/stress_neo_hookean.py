@@ -7,7 +7,7 @@ from mpm.materials import NeoHookean
 
 
 @stress_plane.register(NeoHookean)
-def _(elastic, body, chunk, first, count, dt, report):
+def stress_plane_neo_hookean(elastic, body, chunk, first, count, dt, report):
     deliver_plane(body.particles, chunk, first, count)
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
     mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
@@ -29,7 +29,7 @@ def _(elastic, body, chunk, first, count, dt, report):
 
 
 @stress_volume.register(NeoHookean)
-def _(elastic, body, chunk, first, count, dt, report):
+def stress_volume_neo_hookean(elastic, body, chunk, first, count, dt, report):
     deliver_volume(body.particles, chunk, first, count)
     e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
     mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))

@@ -20,12 +20,12 @@ def place(surface, space, body):
 
 
 @place.register(NoExchange)
-def _(surface, space, body):
+def place_no_exchange(surface, space, body):
     return np.zeros(0, np.int64), np.zeros(0), np.zeros((1, 0))
 
 
 @place.register(Surface)
-def _(surface, space, body):
+def place_surface(surface, space, body):
     D, S = directions(space), surface.owner.shape[0]
     area, offset, one = np.empty(S), np.empty((D, S)), np.zeros((D, 1))
     for s in range(S):

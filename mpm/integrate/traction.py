@@ -41,7 +41,7 @@ def power(source, m, i, chunk, p, D):
 
 
 @act.register(Load)
-def _(source, body, chunk, first, count, dt, next_dt, report):
+def act_load(source, body, chunk, first, count, dt, next_dt, report):
     particles = body.particles
     D = particles.v.shape[1]
     for p in range(count):

@@ -27,12 +27,12 @@ def sharpen(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, 
 
 @sharpen.register(Apic)
 @sharpen.register(Flip)
-def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
+def sharpen_flip_or_apic(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
     return None
 
 
 @sharpen.register(Xpic)
-def _(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
+def sharpen_xpic(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
     shape, D = extents(space), directions(space)
     blend_nodes(field, nodes, force, spare, D, shape, box, 0.0, 0.0)
     for _ in range(1, scheme.order):
@@ -113,12 +113,12 @@ def what_is_lost(thermal, space, body, nodes, walls, order):
 
 
 @what_is_lost.register(Isothermal)
-def _(thermal, space, body, nodes, walls, order):
+def what_is_lost_isothermal(thermal, space, body, nodes, walls, order):
     return np.zeros(0)
 
 
 @what_is_lost.register(Thermal)
-def _(thermal, space, body, nodes, walls, order):
+def what_is_lost_thermal(thermal, space, body, nodes, walls, order):
     shape, D = extents(space), directions(space)
     x, m = body.particles.x, body.particles.m
     box = reach(space, x)

@@ -38,7 +38,7 @@ operation(load8, lambda array, at: LanesType(array.dtype, 8) if holds(array) els
 
 @operation(store, lambda array, at, a: types.none if holds(array) and isinstance(a, LanesType) and a.dtype == array.dtype else None,
            types.Array, types.Integer, LanesType)  # fmt: skip
-def _(context, builder, signature, arguments):
+def store_compiled(context, builder, signature, arguments):
     lanes = signature.args[2]
     builder.store(arguments[2], pointer(context, builder, signature, arguments, lanes), align=lanes.dtype.bitwidth // 8)
     return context.get_dummy_value()
@@ -56,7 +56,7 @@ operation(peek, lambda array, at: array.dtype if holds(array) else None, types.A
 
 
 @operation(poke, lambda array, at, x: types.none if holds(array) and real(x) else None, types.Array, types.Integer, types.Float)
-def _(context, builder, signature, arguments):
+def poke_compiled(context, builder, signature, arguments):
     builder.store(context.cast(builder, arguments[2], signature.args[2], signature.args[0].dtype), place(context, builder, signature, arguments))
     return context.get_dummy_value()
 
@@ -84,7 +84,7 @@ def four(a, b, c, d):
 
 
 @operation(four, lambda a, b, c, d: LanesType(a, 4) if real(a) and a == b == c == d else None, *[types.Float] * 4)
-def _(context, builder, signature, arguments):
+def four_compiled(context, builder, signature, arguments):
     made = ir.Constant(signature.return_type.llvm, ir.Undefined)
     for k, x in enumerate(arguments):
         made = builder.insert_element(made, x, ir.Constant(ir.IntType(32), k))
@@ -124,7 +124,7 @@ def item(a, k):
 
 
 @operation(item, lambda a, k: a.dtype if isinstance(a, LanesType) else None, LanesType, types.Integer)
-def _(context, builder, signature, arguments):
+def item_compiled(context, builder, signature, arguments):
     return builder.extract_element(arguments[0], context.cast(builder, arguments[1], signature.args[1], types.int32))
 
 
@@ -135,7 +135,7 @@ def put(a, k, x):
 
 
 @operation(put, lambda a, k, x: a if isinstance(a, LanesType) else None, LanesType, types.Integer, types.Float)
-def _(context, builder, signature, arguments):
+def put_compiled(context, builder, signature, arguments):
     lanes, k, x = signature.args
     number = context.cast(builder, arguments[2], x, lanes.dtype)
     return builder.insert_element(arguments[0], number, context.cast(builder, arguments[1], k, types.int32))
@@ -146,7 +146,7 @@ def transposed(a, b, c, d):
 
 
 @operation(transposed, lambda a, b, c, d: types.UniTuple(a, 4) if same(a, b) == same(c, d) == a and a.count == 4 else None, *[LanesType] * 4)
-def _(context, builder, signature, arguments):
+def transposed_compiled(context, builder, signature, arguments):
     """In two rounds of shuffles, four each."""
     a, b, c, d = arguments
 

@@ -71,7 +71,7 @@ def like(a, x):
 
 
 @operation(like, lambda a, x: a if isinstance(a, LanesType) else None, LanesType, types.Float)
-def _(context, builder, signature, arguments):
+def like_compiled(context, builder, signature, arguments):
     (made,) = widened(context, builder, signature.return_type(signature.args[1]), arguments[1:])
     return made
 

@@ -48,7 +48,7 @@ def bits(kind):
 
 
 @operation(exponent, one, LanesType)
-def _(context, builder, signature, arguments):
+def exponent_compiled(context, builder, signature, arguments):
     kind = signature.return_type
     made, number, fraction, _ = bits(kind)
     root = np.array(math.sqrt(0.5), np.float64 if fraction == 52 else np.float32)
@@ -58,7 +58,7 @@ def _(context, builder, signature, arguments):
 
 
 @operation(power, one, LanesType)
-def _(context, builder, signature, arguments):
+def power_compiled(context, builder, signature, arguments):
     kind = signature.return_type
     made, number, fraction, bias = bits(kind)
     k = builder.fptosi(arguments[0], made)
@@ -158,7 +158,7 @@ def generic(function, lanes, number, double, single):
     """Let compiled code call `function`: lanes go to our own, clamped to what the exponents of their type reach, numbers to the library."""
 
     @overload(function, inline="always")
-    def _(x):
+    def compiled(x):
         if not isinstance(x, LanesType):
             return lambda x: number(x)  # noqa: PLW0108 - Numba wants a Python function
         most = double if x.dtype == types.float64 else single

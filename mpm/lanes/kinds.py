@@ -33,7 +33,7 @@ def operation(function, made, *takes):
     """Let compiled code call `function`: `made(*types)` is the type of the result (None: not for these); decorates the LLVM side."""
 
     @type_callable(function)
-    def _(context):
+    def result_type(context):
         return made
 
     return lower_builtin(function, *takes)

@@ -19,7 +19,7 @@ def constant(context, kind, number):
 
 @operation(precision, one_or_number, LanesType)
 @operation(precision, one_or_number, types.Float)
-def _(context, builder, signature, arguments):
+def precision_compiled(context, builder, signature, arguments):
     kind = signature.return_type
     return constant(context, kind, float(np.finfo(str(kind.dtype if isinstance(kind, LanesType) else kind)).eps))
 

@@ -194,5 +194,5 @@ def clipped_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
 
 
 @flow_lanes.register(EllipseClipped)
-def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+def flow_lanes_ellipse_clipped(law, trace, deviator, lam, mu, thermal, theta, J, dt):
     return clipped_lanes(trace, deviator, lam, mu, values(law.M, theta), aspects(law.p0, theta, J), values(law.eta, theta), dt, thermal)

@@ -35,5 +35,5 @@ def moduli_hencky(law):
 
 
 @moduli_lanes.register(Hencky)
-def _(law, theta):
+def moduli_lanes_hencky(law, theta):
     return like(theta, law.lam), like(theta, law.mu)

@@ -60,18 +60,18 @@ def area(piece, u):
 
 
 @values.register(Constant)
-def _(law, theta):
+def values_constant(law, theta):
     return like(theta, law.constant)
 
 
 @values.register(Bump)
 @values.register(Logistic)
-def _(law, theta):
+def values_logistic_or_bump(law, theta):
     return value(law, theta)
 
 
 @values.register(Table)
-def _(law, theta):
+def values_table(law, theta):
     if len(law.c) > WALK:
         for k in range(EIGHT):
             theta = put(theta, k, value(law, item(theta, k)))
@@ -82,23 +82,23 @@ def _(law, theta):
 
 
 @enthalpies.register(Constant)
-def _(law, theta):
+def enthalpies_constant(law, theta):
     return law.constant * theta
 
 
 @enthalpies.register(Bump)
-def _(law, theta):
+def enthalpies_bump(law, theta):
     return law.base * theta + 0.5 * law.heat * (1.0 + erf((theta - law.at) * (1.0 / (law.width * SQRT2))))
 
 
 @enthalpies.register(Logistic)
-def _(law, theta):
+def enthalpies_logistic(law, theta):
     z = (theta - law.at) / law.width
     return law.low * theta + (law.high - law.low) * law.width * (maximum(like(z, 0.0), z) + log1p(exponential(-absolute(z))))
 
 
 @enthalpies.register(Table)
-def _(law, theta):
+def enthalpies_table(law, theta):
     if len(law.c) > WALK:
         for k in range(EIGHT):
             theta = put(theta, k, enthalpy(law, item(theta, k)))
@@ -137,32 +137,32 @@ def settle_from(law, h, guess, lowest):
 
 
 @temperatures.register(Constant)
-def _(law, h, guess):
+def temperatures_constant(law, h, guess):
     return h / law.constant
 
 
 @temperatures.register(Bump)
-def _(law, h, guess):
+def temperatures_bump(law, h, guess):
     return settle_from(law, h, guess, law.base + 0.5 * (law.heat - abs(law.heat)) / (law.width * SQRT2PI))
 
 
 @temperatures.register(Logistic)
-def _(law, h, guess):
+def temperatures_logistic(law, h, guess):
     return settle_from(law, h, guess, min(law.low, law.high))
 
 
 @values.register(Piece)
-def _(law, theta):
+def values_piece(law, theta):
     return height(law, theta - law.start)
 
 
 @enthalpies.register(Piece)
-def _(law, theta):
+def enthalpies_piece(law, theta):
     return area(law, theta - law.start)
 
 
 @temperatures.register(Table)
-def _(law, h, guess):
+def temperatures_table(law, h, guess):
     if len(law.c) > WALK:
         for k in range(EIGHT):
             h = put(h, k, temperature_of(law, item(h, k), item(guess, k)))

@@ -16,6 +16,6 @@ def flow_none(law, elastic, e1, e2, e3, thermal, theta, dt):
 
 
 @flow_lanes.register(NoFlow)
-def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+def flow_lanes_no_flow(law, trace, deviator, lam, mu, thermal, theta, J, dt):
     one, nought = like(trace, 1.0), like(trace, 0.0)
     return trace, one, nought, nought, one

@@ -53,27 +53,27 @@ for kind in (Constant, Bump, Logistic, Table):
 
 
 @at_volume.register(Porous)
-def _(law, J):
+def at_volume_porous(law, J):
     return Constant(aspect(law.solid / J, law.exponent))
 
 
 @aspects.register(Porous)
-def _(law, theta, J):
+def aspects_porous(law, theta, J):
     for k in range(EIGHT):
         J = put(J, k, aspect(law.solid / item(J, k), law.exponent))
     return J
 
 
 @settled.register(NoFlow)
-def _(law, J):
+def settled_no_flow(law, J):
     return law
 
 
 @settled.register(EllipseRadial)
-def _(law, J):
+def settled_ellipse_radial(law, J):
     return EllipseRadial(law.M, at_volume(law.p0, J), law.eta)
 
 
 @settled.register(EllipseClipped)
-def _(law, J):
+def settled_ellipse_clipped(law, J):
     return EllipseClipped(law.M, at_volume(law.p0, J), law.eta)

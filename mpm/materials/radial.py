@@ -141,5 +141,5 @@ def radial_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
 
 
 @flow_lanes.register(EllipseRadial)
-def _(law, trace, deviator, lam, mu, thermal, theta, J, dt):
+def flow_lanes_ellipse_radial(law, trace, deviator, lam, mu, thermal, theta, J, dt):
     return radial_lanes(trace, deviator, lam, mu, values(law.M, theta), aspects(law.p0, theta, J), values(law.eta, theta), dt, thermal)

@@ -23,17 +23,17 @@ class HenckyWarm(NamedTuple):
 
 
 @warmed.register(Hencky)
-def _(law, theta):
+def warmed_hencky(law, theta):
     return law
 
 
 @warmed.register(HenckyWarm)
-def _(law, theta):
+def warmed_hencky_warm(law, theta):
     E = value(law.E, theta)
     return Hencky(law.one.mu * E, law.one.lam * E)
 
 
 @moduli_lanes.register(HenckyWarm)
-def _(law, theta):
+def moduli_lanes_hencky_warm(law, theta):
     E = values(law.E, theta)
     return law.one.lam * E, law.one.mu * E

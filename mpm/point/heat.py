@@ -19,12 +19,12 @@ def above(thermal):
 
 
 @above.register(Isothermal)
-def _(thermal):
+def above_isothermal(thermal):
     return 0.0
 
 
 @above.register(Thermal)
-def _(thermal):
+def above_thermal(thermal):
     return thermal.theta[0]
 
 
@@ -35,12 +35,12 @@ def datum(thermal):
 
 
 @datum.register(Isothermal)
-def _(thermal):
+def datum_isothermal(thermal):
     return thermal.temperature
 
 
 @datum.register(Thermal)
-def _(thermal):
+def datum_thermal(thermal):
     return thermal.zero
 
 
@@ -51,12 +51,12 @@ def put(thermal, theta):
 
 
 @put.register(Isothermal)
-def _(thermal, theta):
+def put_isothermal(thermal, theta):
     return None
 
 
 @put.register(Thermal)
-def _(thermal, theta):
+def put_thermal(thermal, theta):
     thermal.theta[0] = theta
 
 
@@ -67,7 +67,7 @@ def since(alpha, theta, zero):
 
 
 @since.register(Constant)
-def _(alpha, theta, zero):
+def since_constant(alpha, theta, zero):
     return alpha.constant * theta
 
 
@@ -87,12 +87,12 @@ def content(thermal):
 
 
 @content.register(Isothermal)
-def _(thermal):
+def content_isothermal(thermal):
     return 0.0
 
 
 @content.register(Thermal)
-def _(thermal):
+def content_thermal(thermal):
     return since(thermal.alpha, thermal.theta[0], thermal.zero)
 
 
@@ -103,12 +103,12 @@ def exchange(law, thermal, density, swell, dt):
 
 
 @exchange.register(NoExchange)
-def _(law, thermal, density, swell, dt):
+def exchange_no_exchange(law, thermal, density, swell, dt):
     return 0.0
 
 
 @exchange.register(Lumped)
-def _(law, thermal, density, swell, dt):
+def exchange_lumped(law, thermal, density, swell, dt):
     # Exact for constant alpha. Otherwise alpha of the middle of the step (order 2), the heat through enthalpy and never past the surroundings.
     theta = thermal.zero + thermal.theta[0]
     gap = law.outside - theta
@@ -132,12 +132,12 @@ def time_constant(law, thermal, density):
 
 
 @time_constant.register(NoExchange)
-def _(law, thermal, density):
+def time_constant_no_exchange(law, thermal, density):
     return math.inf
 
 
 @time_constant.register(Lumped)
-def _(law, thermal, density):
+def time_constant_lumped(law, thermal, density):
     if law.conductance == 0.0 or law.conductance == math.inf:
         return math.inf
     return density * value(thermal.alpha, thermal.zero + thermal.theta[0]) / law.conductance

@@ -26,87 +26,87 @@ for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating):
 
 
 @pick.register(Hencky)
-def _(law, i):
+def pick_hencky(law, i):
     return Hencky(law.mu[i], law.lam[i])
 
 
 @pick.register(NeoHookean)
-def _(law, i):
+def pick_neo_hookean(law, i):
     return NeoHookean(law.mu[i], law.lam[i])
 
 
 @pick.register(HenckyWarm)
-def _(law, i):
+def pick_hencky_warm(law, i):
     return HenckyWarm(pick(law.one, i), pick(law.E, i))
 
 
 @pick.register(Porous)
-def _(law, i):
+def pick_porous(law, i):
     return Porous(law.solid[i], law.exponent[i])
 
 
 @pick.register(Softening)
-def _(law, i):
+def pick_softening(law, i):
     return Softening(pick(law.inner, i), pick(law.E, i))
 
 
 @pick.register(Constant)
-def _(law, i):
+def pick_constant(law, i):
     return Constant(law.constant[i])
 
 
 @pick.register(Bump)
-def _(law, i):
+def pick_bump(law, i):
     return Bump(law.base[i], law.heat[i], law.at[i], law.width[i])
 
 
 @pick.register(Logistic)
-def _(law, i):
+def pick_logistic(law, i):
     return Logistic(law.low[i], law.high[i], law.at[i], law.width[i])
 
 
 @pick.register(Table)
-def _(law, i):
+def pick_table(law, i):
     return Table(law.theta[i], law.c[i], law.h[i])
 
 
 @pick.register(EllipseRadial)
-def _(law, i):
+def pick_ellipse_radial(law, i):
     return EllipseRadial(pick(law.M, i), pick(law.p0, i), pick(law.eta, i))
 
 
 @pick.register(EllipseClipped)
-def _(law, i):
+def pick_ellipse_clipped(law, i):
     return EllipseClipped(pick(law.M, i), pick(law.p0, i), pick(law.eta, i))
 
 
 @pick.register(Isothermal)
-def _(law, i):
+def pick_isothermal(law, i):
     return Isothermal(law.temperature[i])
 
 
 @pick.register(Thermal)
-def _(law, i):
+def pick_thermal(law, i):
     return Thermal(law.theta[i], law.c[i], law.zero[i], pick(law.kappa, i), pick(law.alpha, i))
 
 
 @pick.register(Lumped)
-def _(law, i):
+def pick_lumped(law, i):
     return Lumped(law.conductance[i], law.outside[i])
 
 
 @pick.register(Expansion)
-def _(law, i):
+def pick_expansion(law, i):
     return Expansion(law.gamma[i], law.shift[i])
 
 
 @pick.register(Latched)
-def _(law, i):
+def pick_latched(law, i):
     return Latched(law.gamma[i], law.shift[i], law.most[i], law.set[i])
 
 
 @pick.register(Heating)
-def _(law, i):
+def pick_heating(law, i):
     return Heating(law.gamma[i], law.fraction[i])
 
 

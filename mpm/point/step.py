@@ -18,22 +18,22 @@ RELAXATION, YIELD, CONSTANT, RAMP = 100.0, 20.0, 100.0, 1.0  # steps a relaxatio
 
 
 @stress.register(Rigid)
-def _(law, e1, e2, e3, thermal):
+def stress_rigid(law, e1, e2, e3, thermal):
     return 0.0, 0.0, 0.0
 
 
 @energy.register(Rigid)
-def _(law, e1, e2, e3):
+def energy_rigid(law, e1, e2, e3):
     return 0.0
 
 
 @moduli.register(Rigid)
-def _(law):
+def moduli_rigid(law):
     return math.inf, math.inf
 
 
 @warmed.register(Rigid)
-def _(law, theta):
+def warmed_rigid(law, theta):
     return law
 
 
@@ -44,7 +44,7 @@ def relaxation(law, elastic, theta):
 
 
 @relaxation.register(NoFlow)
-def _(law, elastic, theta):
+def relaxation_no_flow(law, elastic, theta):
     return math.inf, math.inf
 
 

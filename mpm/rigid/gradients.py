@@ -61,18 +61,18 @@ def invert(solver, x, guess):
 
 
 @prepare.register(Factor)
-def _(solver, diff, a, first, b, second, idle, sums):
+def prepare_factor(solver, diff, a, first, b, second, idle, sums):
     fill(solver.band, diff, a, first, b, second, idle)
     return factorise(solver.band, a.shape[1], solver.reach) < 0
 
 
 @invert.register(Factor)
-def _(solver, x, guess):
+def invert_factor(solver, x, guess):
     back_substitute(solver.band, solver.reach, x)
 
 
 @prepare.register(Gradients)
-def _(solver, diff, a, first, b, second, idle, sums):
+def prepare_gradients(solver, diff, a, first, b, second, idle, sums):
     for o in range(a.shape[0]):
         for i in range(a.shape[1]):
             solver.stencil[o, i] = first * a[o, i] + second * b[o, i]
@@ -143,7 +143,7 @@ def smooth(solver, z):
 
 
 @invert.register(Gradients)
-def _(solver, x, guess):
+def invert_gradients(solver, x, guess):
     n, S = len(x), solver.stencil
     b, r, p, z, q = x.copy(), np.empty(n), np.zeros(n), np.empty(n), np.empty(n)
     goal = 0.0

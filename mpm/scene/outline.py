@@ -75,7 +75,7 @@ def ridges(shape: Shape, spacing: float) -> np.ndarray:
 
 
 @ridges.register
-def _(shape: Box, spacing: float) -> np.ndarray:
+def ridges_box(shape: Box, spacing: float) -> np.ndarray:
     if len(shape.lower) == 2:
         return ridges.dispatch(Shape)(shape, spacing)
     lower, upper, found = np.array(shape.lower), np.array(shape.upper), []
@@ -90,13 +90,13 @@ def _(shape: Box, spacing: float) -> np.ndarray:
 
 
 @ridges.register
-def _(shape: Ball, spacing: float) -> np.ndarray:
+def ridges_ball(shape: Ball, spacing: float) -> np.ndarray:
     reach = shape.radius * np.eye(len(shape.centre))
     return np.array(shape.centre) + np.concatenate([reach, -reach])
 
 
 @ridges.register
-def _(shape: Cylinder, spacing: float) -> np.ndarray:
+def ridges_cylinder(shape: Cylinder, spacing: float) -> np.ndarray:
     if len(shape.base) == 2:
         return ridges(Box(*(tuple(corner) for corner in shape.bounds())), spacing)
     turn = spaced(0.0, 2 * np.pi, spacing / shape.radius, 4)

@@ -56,7 +56,7 @@ def log_volume(law, X, i, t):
 
 
 @push.register(Made)
-def _(law, X, i, c, t):
+def push_made(law, X, i, c, t):
     F, slope, _ = grown(law, X, i, c, t)
     theta, steep, _ = warmth(law, X, i, c, t)
     volume, _ = log_volume(law, X, i, t)
@@ -67,7 +67,7 @@ def _(law, X, i, c, t):
 
 
 @heat.register(Made)
-def _(law, X, i, t):
+def heat_made(law, X, i, t):
     volume, swelling = log_volume(law, X, i, t)
     theta, _, rate = warmth(law, X, i, 0, t)
     flow = 0.0

@@ -24,12 +24,12 @@ def act_on(source, body, chunk, first, count, dt, report):
 
 
 @act_on.register(NoSource)
-def _(source, body, chunk, first, count, dt, report):
+def act_on_no_source(source, body, chunk, first, count, dt, report):
     return None
 
 
 @act_on.register(Source)
-def _(source, body, chunk, first, count, dt, report):
+def act_on_source(source, body, chunk, first, count, dt, report):
     particles = body.particles
     for p in range(count):
         i = first + p
@@ -47,24 +47,24 @@ def swollen(space, X, i, chunk, p):
 
 
 @swollen.register(Line)
-def _(space, X, i, chunk, p):
+def swollen_line(space, X, i, chunk, p):
     return dilation1((chunk.L[0, 0, p],))
 
 
 @swollen.register(Plane)
-def _(space, X, i, chunk, p):
+def swollen_plane(space, X, i, chunk, p):
     L = chunk.L
     return dilation2((L[0, 0, p], L[0, 1, p], L[1, 0, p], L[1, 1, p], 0.0))
 
 
 @swollen.register(Axisymmetric)
-def _(space, X, i, chunk, p):
+def swollen_axisymmetric(space, X, i, chunk, p):
     L = chunk.L
     return dilation2((L[0, 0, p], L[0, 1, p], L[1, 0, p], L[1, 1, p], chunk.v[0, p] / X[i, 0]))
 
 
 @swollen.register(Volume)
-def _(space, X, i, chunk, p):
+def swollen_volume(space, X, i, chunk, p):
     L = chunk.L
     return dilation3((L[0, 0, p], L[0, 1, p], L[0, 2, p], L[1, 0, p], L[1, 1, p], L[1, 2, p], L[2, 0, p], L[2, 1, p], L[2, 2, p]))
 
@@ -76,12 +76,12 @@ def average_volume(locking, space, body, reference, chunk):
 
 
 @average_volume.register(NoAverage)
-def _(locking, space, body, reference, chunk):
+def average_volume_no_average(locking, space, body, reference, chunk):
     return None
 
 
 @average_volume.register(Average)
-def _(locking, space, body, reference, chunk):
+def average_volume_average(locking, space, body, reference, chunk):
     X, V0, total, gradient, D = reference.X, body.particles.V0, locking.change, Bspline(), reference.X.shape[1]
     for n in reference.touched:
         total[n] = 0.0
@@ -111,12 +111,12 @@ def relax_volume(locking, space, X, first, chunk, count):
 
 
 @relax_volume.register(NoAverage)
-def _(locking, space, X, first, chunk, count):
+def relax_volume_no_average(locking, space, X, first, chunk, count):
     return None
 
 
 @relax_volume.register(Average)
-def _(locking, space, X, first, chunk, count):
+def relax_volume_average(locking, space, X, first, chunk, count):
     D, at, unused = X.shape[1], chunk.f[0], chunk.S[0]
     gather_scalar(space, X, first, count, locking.change, at, unused, unused)
     for p in range(count):
@@ -136,12 +136,12 @@ def restore(locking, chunk, count):
 
 
 @restore.register(NoAverage)
-def _(locking, chunk, count):
+def restore_no_average(locking, chunk, count):
     return None
 
 
 @restore.register(Average)
-def _(locking, chunk, count):
+def restore_average(locking, chunk, count):
     D = chunk.a.shape[0]
     for p in range(count):
         stretch = chunk.none[p]

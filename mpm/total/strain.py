@@ -102,7 +102,7 @@ def weigh(particles, chunk, first, count):
 
 
 @answer_all.register(Line)
-def _(space, body, reference, chunk, first, count, dt, report):
+def answer_all_line(space, body, reference, chunk, first, count, dt, report):
     particles, squeeze = body.particles, 1.0
     relax_volume(body.locking, space, reference.X, first, chunk, count)
     for p in range(count):
@@ -186,7 +186,7 @@ def plane_stress(body, reference, chunk, first, count):
 
 
 @answer_all.register(Plane)
-def _(space, body, reference, chunk, first, count, dt, report):
+def answer_all_plane(space, body, reference, chunk, first, count, dt, report):
     for p in range(count):
         chunk.e[HOOP, p] = 0.0
     relax_volume(body.locking, space, reference.X, first, chunk, count)
@@ -199,7 +199,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
 
 
 @answer_all.register(Axisymmetric)
-def _(space, body, reference, chunk, first, count, dt, report):
+def answer_all_axisymmetric(space, body, reference, chunk, first, count, dt, report):
     X, V0 = reference.X, body.particles.V0
     for p in range(count):
         chunk.e[HOOP, p] = chunk.v[0, p] / X[first + p, 0]
@@ -215,7 +215,7 @@ def _(space, body, reference, chunk, first, count, dt, report):
 
 
 @answer_all.register(Volume)
-def _(space, body, reference, chunk, first, count, dt, report):
+def answer_all_volume(space, body, reference, chunk, first, count, dt, report):
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
     one, low, high, flat = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J)), splat8(real(FLAT))
     swell, good, squeeze = splat8(real(0)), one, one

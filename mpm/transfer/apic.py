@@ -14,18 +14,18 @@ class Apic(NamedTuple):
 
 
 @carry.register(Apic)
-def _(scheme, particles, first, chunk, count, change, last):
+def carry_apic(scheme, particles, first, chunk, count, change, last):
     if last:
         deliver(particles, first, chunk, count)
 
 
 @wants_change.register(Apic)
-def _(scheme):
+def wants_change_apic(scheme):
     return False
 
 
 @spread.register(Apic)
-def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
+def spread_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
     D, n = chunk.a.shape[0], chunk.m.shape[0]
     for p in range(0, count, EIGHT):
         for c in range(D):
@@ -39,5 +39,5 @@ def _(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
 
 
 @collect.register(Apic)
-def _(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
+def collect_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
     gather(space, gradient, x, first, chunk, count, nodes)

@@ -18,7 +18,7 @@ class Flip(NamedTuple):
 
 
 @carry.register(Flip)
-def _(scheme, particles, first, chunk, count, change, last):
+def carry_flip(scheme, particles, first, chunk, count, change, last):
     for c in range(chunk.u.shape[0]):
         for p in range(count):
             old, dv = particles.v[first + p, c], change[c, p]
@@ -30,7 +30,7 @@ def _(scheme, particles, first, chunk, count, change, last):
 
 
 @wants_change.register(Flip)
-def _(scheme):
+def wants_change_flip(scheme):
     return True
 
 
@@ -60,10 +60,10 @@ def impulse_parts(gradient, chunk):
 
 
 @impulse_parts.register(Mls)
-def _(gradient, chunk):
+def impulse_parts_mls(gradient, chunk):
     return chunk.S, chunk.G
 
 
 @impulse_parts.register(Bspline)
-def _(gradient, chunk):
+def impulse_parts_bspline(gradient, chunk):
     return chunk.G, chunk.S

@@ -6,7 +6,7 @@ from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, u
 
 
 @scatter.register(Line)
-def _(space, gradient, x, first, chunk, count, nodes, box):
+def scatter_line(space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse = space.h, 1.0 / space.h
     for p in range(count):
@@ -22,7 +22,7 @@ def _(space, gradient, x, first, chunk, count, nodes, box):
 
 
 @gather.register(Line)
-def _(space, gradient, x, first, chunk, count, nodes):
+def gather_line(space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse = 1.0 / space.h
     for p in range(count):
@@ -39,7 +39,7 @@ def _(space, gradient, x, first, chunk, count, nodes):
 
 
 @scatter_scalar.register(Line)
-def _(space, x, first, count, a, A, G, nodes):
+def scatter_scalar_line(space, x, first, count, a, A, G, nodes):
     h, inverse = space.h, 1.0 / space.h
     for p in range(count):
         i0, w, g, d, _ = stencil(space.basis, x[first + p, 0] * inverse)
@@ -48,7 +48,7 @@ def _(space, x, first, count, a, A, G, nodes):
 
 
 @gather_scalar.register(Line)
-def _(space, x, first, count, nodes, value, slope, grad):
+def gather_scalar_line(space, x, first, count, nodes, value, slope, grad):
     inverse = 1.0 / space.h
     for p in range(count):
         i0, w, g, _, b = stencil(space.basis, x[first + p, 0] * inverse)

@@ -13,7 +13,7 @@ from mpm.transfer.stencils import stencil_chunk
 
 @scatter.register(Plane)
 @scatter.register(Axisymmetric)
-def _(space, gradient, x, first, chunk, count, nodes, box):
+def scatter_axisymmetric_or_plane(space, gradient, x, first, chunk, count, nodes, box):
     scatter_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes, box)
 
 
@@ -24,14 +24,14 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 
 @scatter_by_basis.register(Quadratic)
-def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+def scatter_plane_quadratic(basis, space, gradient, x, first, chunk, count, nodes, box):
     stencil_chunk(space, chunk.place, count, chunk.s, box)
     scatter_plane(space, gradient, chunk, count, nodes)
 
 
 @scatter_by_basis.register(Linear)
 @scatter_by_basis.register(Cubic)
-def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+def scatter_plane_cubic_or_linear(basis, space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
@@ -59,7 +59,7 @@ def _(basis, space, gradient, x, first, chunk, count, nodes, box):
 
 @gather.register(Plane)
 @gather.register(Axisymmetric)
-def _(space, gradient, x, first, chunk, count, nodes):
+def gather_axisymmetric_or_plane(space, gradient, x, first, chunk, count, nodes):
     gather_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes)
 
 
@@ -70,14 +70,14 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 
 @gather_by_basis.register(Quadratic)
-def _(basis, space, gradient, x, first, chunk, count, nodes):
+def gather_plane_quadratic(basis, space, gradient, x, first, chunk, count, nodes):
     stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_plane(space, gradient, chunk, count, nodes)
 
 
 @gather_by_basis.register(Linear)
 @gather_by_basis.register(Cubic)
-def _(basis, space, gradient, x, first, chunk, count, nodes):
+def gather_plane_cubic_or_linear(basis, space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):
@@ -117,7 +117,7 @@ def _(basis, space, gradient, x, first, chunk, count, nodes):
 
 @scatter_scalar.register(Plane)
 @scatter_scalar.register(Axisymmetric)
-def _(space, x, first, count, a, A, G, nodes):
+def scatter_scalar_axisymmetric_or_plane(space, x, first, count, a, A, G, nodes):
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
         i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
@@ -131,7 +131,7 @@ def _(space, x, first, count, a, A, G, nodes):
 
 @gather_scalar.register(Plane)
 @gather_scalar.register(Axisymmetric)
-def _(space, x, first, count, nodes, value, slope, grad):
+def gather_scalar_axisymmetric_or_plane(space, x, first, count, nodes, value, slope, grad):
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):
         i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)

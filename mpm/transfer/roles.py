@@ -100,12 +100,12 @@ def uses_basis_gradient(gradient):
 
 
 @uses_basis_gradient.register(Mls)
-def _(gradient):
+def uses_basis_gradient_mls(gradient):
     return False
 
 
 @uses_basis_gradient.register(Bspline)
-def _(gradient):
+def uses_basis_gradient_bspline(gradient):
     return True
 
 

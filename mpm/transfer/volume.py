@@ -9,7 +9,7 @@ from mpm.transfer.stencils import stencil_chunk
 
 
 @scatter.register(Volume)
-def _(space, gradient, x, first, chunk, count, nodes, box):
+def scatter_in_volume(space, gradient, x, first, chunk, count, nodes, box):
     scatter_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes, box)
 
 
@@ -20,14 +20,14 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 
 @scatter_by_basis.register(Quadratic)
-def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+def scatter_volume_quadratic(basis, space, gradient, x, first, chunk, count, nodes, box):
     stencil_chunk(space, chunk.place, count, chunk.s, box)
     scatter_volume(space, gradient, chunk, count, nodes)
 
 
 @scatter_by_basis.register(Linear)
 @scatter_by_basis.register(Cubic)
-def _(basis, space, gradient, x, first, chunk, count, nodes, box):
+def scatter_volume_cubic_or_linear(basis, space, gradient, x, first, chunk, count, nodes, box):
     basis_gradient = uses_basis_gradient(gradient)
     h, inverse, n1, n2 = space.h, 1.0 / space.h, space.n1, space.n2
     for p in range(count):
@@ -65,7 +65,7 @@ def _(basis, space, gradient, x, first, chunk, count, nodes, box):
 
 
 @gather.register(Volume)
-def _(space, gradient, x, first, chunk, count, nodes):
+def gather_in_volume(space, gradient, x, first, chunk, count, nodes):
     gather_by_basis(space.basis, space, gradient, x, first, chunk, count, nodes)
 
 
@@ -76,14 +76,14 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 
 @gather_by_basis.register(Quadratic)
-def _(basis, space, gradient, x, first, chunk, count, nodes):
+def gather_volume_quadratic(basis, space, gradient, x, first, chunk, count, nodes):
     stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_volume(space, gradient, chunk, count, nodes)
 
 
 @gather_by_basis.register(Linear)
 @gather_by_basis.register(Cubic)
-def _(basis, space, gradient, x, first, chunk, count, nodes):
+def gather_volume_cubic_or_linear(basis, space, gradient, x, first, chunk, count, nodes):
     basis_gradient = uses_basis_gradient(gradient)
     inverse, n1, n2 = 1.0 / space.h, space.n1, space.n2
     for p in range(count):
@@ -126,7 +126,7 @@ def _(basis, space, gradient, x, first, chunk, count, nodes):
 
 
 @scatter_scalar.register(Volume)
-def _(space, x, first, count, a, A, G, nodes):
+def scatter_scalar_volume(space, x, first, count, a, A, G, nodes):
     h, inverse, n1, n2 = space.h, 1.0 / space.h, space.n1, space.n2
     for p in range(count):
         i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
@@ -143,7 +143,7 @@ def _(space, x, first, count, a, A, G, nodes):
 
 
 @gather_scalar.register(Volume)
-def _(space, x, first, count, nodes, value, slope, grad):
+def gather_scalar_volume(space, x, first, count, nodes, value, slope, grad):
     inverse, n1, n2 = 1.0 / space.h, space.n1, space.n2
     for p in range(count):
         i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)

@@ -19,7 +19,7 @@ class Xpic(NamedTuple):
 
 
 @carry.register(Xpic)
-def _(scheme, particles, first, chunk, count, change, last):
+def carry_xpic(scheme, particles, first, chunk, count, change, last):
     for c in range(chunk.u.shape[0]):
         for p in range(count):
             chunk.u[c, p] = change[c, p]
@@ -30,7 +30,7 @@ def _(scheme, particles, first, chunk, count, change, last):
 
 
 @wants_change.register(Xpic)
-def _(scheme):
+def wants_change_xpic(scheme):
     return True
 
 
