@@ -48,7 +48,7 @@ def piece(table, i, h):
 
 
 @piece.register(Table)
-def _(table, i, h):
+def piece_table(table, i, h):
     s = (h - table.start) * table.per
     k = min(max(int(np.floor(s)) + 1, 0), len(table.theta) - 1)
     c, p = table.theta, table.potential
@@ -56,7 +56,7 @@ def _(table, i, h):
 
 
 @piece.register(Tables)
-def _(table, i, h):
+def piece_tables(table, i, h):
     b = table.which[i]
     s = (h - table.start[b]) * table.per[b]
     k = min(max(int(np.floor(s)) + 1, 0), table.top[b])
