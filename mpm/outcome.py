@@ -6,7 +6,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 from dataclasses import dataclass
 
 COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
-UNPREPARED = 12
+UNPREPARED, NO_EQUILIBRIUM = 12, 13
 UNSOUND = -1  # what a block of steps was to begin from: mpm.guards looks again, and says which of these it is
 
 KINDS = {
@@ -22,6 +22,10 @@ KINDS = {
     HEAT_SOLVER: ("heat_solver", "an implicit heat step did not converge", "lower `method.heat_step`, or raise `method.heat.implicit.tolerance`"),
     FRACTURED: ("fractured", "particles are more than two cells apart", "more `method.particles` or larger cells; `method.fracture: warn` lets it run on"),
     UNPREPARED: ("unprepared", "a body came near a wall or another body unforeseen", "name what it meets: the wall as `contact`, the pair under `contacts`"),
+    NO_EQUILIBRIUM: (
+        "no_equilibrium", "no step of implicit mechanics finds a balance of forces",
+        "the load may be more than a material without viscosity bears: a smaller load, `eta` in flow, or `method.mechanics: explicit` to see it collapse",
+    ),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

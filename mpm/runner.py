@@ -177,6 +177,8 @@ def compile_ahead(experiment) -> None:
         return
     if getattr(experiment.model, "kind", "full") == "auto" or not any(material.heat is not None for material in experiment.materials.values()):
         return
+    if experiment.method.mechanics == "implicit":
+        return
     helper = subprocess.Popen(
         [sys.executable, "-P", "-c", HEAT_STEP, json.dumps(sys.path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
     )

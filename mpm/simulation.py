@@ -77,6 +77,7 @@ class Scene:
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
     threads: int = 1  # that share the work of a large scene
     references: tuple = ()  # mpm.total.Reference by body, in the total frame; none in the updated one
+    implicit: Any = None  # mpm.implicit.drive.Implicit, or None: explicit mechanics
     order: Order = field(init=False)  # of the particles, while it runs
 
     def __post_init__(self):
@@ -89,9 +90,8 @@ class Clock:
     """Counts, limits and accumulated sources of one run."""
 
     def __init__(self, scene: Scene):
-        self.time, self.steps, self.heat_steps = 0.0, 0, 0
-        self.implicit = self.iterations = 0  # implicit heat steps and their solver's iterations
-        self.bound: dict[str, int] = {}
+        self.time, self.steps, self.heat_steps, self.implicit, self.iterations = 0.0, 0, 0, 0, 0  # implicit: heat steps, and their solver's iterations
+        self.bound, self.told = {}, {}  # steps by what bound them; what implicit mechanics counts
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
         self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
         self.lag, self.touching = 0.0, False  # how far velocities lie behind positions [s] (contact/insync.py); whether the last block looked for contacts
@@ -174,6 +174,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
 
 def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, look) -> Outcome:
     """Advance to the output time `end`; from within the interval where the run was cut there."""
+    if scene.implicit is not None:
+        return scene.implicit.advance(scene, clock, guards, buffers, end, warm_bodies, recorder, look)
     cut = clock.parts > 0
     if not cut:
         scene.order.refresh()

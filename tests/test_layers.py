@@ -17,7 +17,7 @@ LAYERS = {
     "cache": 0, "fingerprint": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0,
     "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
-    "diagnostics": 2, "follow": 2, "integrate": 2, "total": 2, "contact": 2,
+    "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
     "error": 2, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
     "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
@@ -29,7 +29,7 @@ PEERS = {
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene
-    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"},
+    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards"}, "observe": {"fields"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"}, "results": {"plots"},
@@ -83,7 +83,7 @@ def test_imports_go_down(path):
 
 @pytest.mark.parametrize("path", [path for path in MODULES if known(path) and LAYERS[room(path)] <= COMPUTING], ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_the_computing_layers_know_only_numbers(path):
-    more = {"rigid": {"scipy"}, "linking": {"llvmlite"}, "lanes": {"llvmlite"}}
+    more = {"rigid": {"scipy"}, "implicit": {"scipy"}, "linking": {"llvmlite"}, "lanes": {"llvmlite"}}
     allowed = STANDARD | {"numpy", "numba", "mpm"} | more.get(room(path), set())
     foreign = {module for module, _ in imports(path) if module.split(".")[0] not in allowed}
     assert not foreign

@@ -9,6 +9,7 @@ from typing import Any
 
 from mpm.config import rules_fit as fitting
 from mpm.config import rules_frame as framing
+from mpm.config import rules_mechanics as steps
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
@@ -104,4 +105,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (framing.frame, once),
     (framing.frame_wall, each("walls")),
     (framing.frame_material, each("materials")),
+    (steps.mechanics, once),
+    (steps.mechanics_wall, each("walls")),
+    (steps.mechanics_material, each("materials")),
 ]

@@ -7,6 +7,7 @@ Roles (the law chooses the function; all work compiled and in plain Python)
           flow(law, elastic, e1, e2, e3, thermal, theta, dt) -> e1, e2, e3, dissipated, ok
                                                                                       flow laws: no_flow, radial, clipped
           moduli_lanes(law, theta), flow_lanes(law, trace, deviator, ...): the same over lanes of eight particles (mpm.lanes)
+          tangent(law, elastic, trace, size, thermal, theta, dt): potential, stress and slopes of one step, for implicit mechanics; no_flow, radial
           warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
           values(law, theta), enthalpies(law, theta), temperatures(law, h, guess)     over lanes: many
@@ -27,7 +28,7 @@ from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.return_maps import return_map
-from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, temperature_of, value, warmed
+from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, tangent, temperature_of, value, warmed
 from mpm.materials.warm import HenckyWarm
 
 ELASTIC = (Hencky,)  # those that may flow; NeoHookean is elastic only
@@ -37,5 +38,5 @@ LAWS = (Constant, Table, Bump, Logistic)
 __all__ = [
     "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow",
     "Porous", "Table", "energy", "enthalpies", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes", "return_map", "settled",
-    "stress", "table", "temperature_of", "temperatures", "value", "values", "warmed",
+    "stress", "table", "tangent", "temperature_of", "temperatures", "value", "values", "warmed",
 ]  # fmt: skip

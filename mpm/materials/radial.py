@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from mpm.jit import kernel
 from mpm.lanes import absolute, below, choose, like, maximum, most, precision, sqrt
-from mpm.materials.ellipse import admissible, excess, excess_lanes, invariants, pressures, slowness, strains
-from mpm.materials.roles import aspects, flow, flow_lanes, moduli, value, values
+from mpm.materials.ellipse import SQRT6, admissible, excess, excess_lanes, invariants, pressures, slowness, strains
+from mpm.materials.roles import aspects, flow, flow_lanes, moduli, tangent, value, values
 
 MOST = 60  # Newton steps; 13 is the most seen, in a million extreme states
 
@@ -143,3 +143,30 @@ def radial_lanes(trace, deviator, lam, mu, M, p0, eta, dt, thermal):
 @flow_lanes.register(EllipseRadial)
 def flow_lanes_ellipse_radial(law, trace, deviator, lam, mu, thermal, theta, J, dt):
     return radial_lanes(trace, deviator, lam, mu, values(law.M, theta), aspects(law.p0, theta, J), values(law.eta, theta), dt, thermal)
+
+
+@tangent.register(EllipseRadial)
+def _(law, elastic, trace, size, thermal, theta, dt):
+    """W = p p_tr/K + q q_tr/(3 mu) - p^2/(2 K) - q^2/(6 mu) - dt M^2/(2 eta) <s - 1>^2; the map is a proximal one, so W is convex."""
+    lam, mu = moduli(elastic)
+    K, M, p0, eta = lam + 2.0 * mu / 3.0, value(law.M, theta), value(law.p0, theta), value(law.eta, theta)
+    p_trial, q_trial = thermal - K * trace, SQRT6 * mu * size
+    whole = 0.5 * p_trial * p_trial / K + 0.5 * q_trial * q_trial / (3.0 * mu)
+    if not (M > 0.0 and p0 > 0.0 and eta >= 0.0):
+        return whole, p_trial, 1.0, 1.0, 0.0, 1.0, 0.0, False
+    a1, a2, x = abs(p_trial) / (p0 * M), q_trial / M, slowness(K, eta, dt)
+    if excess(a1, a2) <= 0.0 or x == math.inf:
+        return whole, p_trial, 1.0, 1.0, 0.0, 1.0, 0.0, True
+    k1, k2 = 1.0 / (p0 * p0), 3.0 * mu / K
+    g, steps = overstress(a1, a2, k1, k2, x)
+    u1, u2 = 1.0 + k1 * g, 1.0 + k2 * g
+    b1, b2 = a1 / u1, a2 / u2
+    s = math.sqrt(b1 * b1 + b2 * b2)
+    N = k1 * b1 * b1 / u1 + k2 * b2 * b2 / u2 + s * s * s * x
+    p, q = p_trial / u1, q_trial / u2
+    lost = p * (k1 * g * p) / K + q * (k2 * g * q) / (3.0 * mu)
+    over = M * s * g  # dt M^2/(2 eta) <s - 1>^2 = x (M s g)^2/(2 K), as s - 1 = s g x
+    W = 0.5 * p * (p_trial + (p_trial - p)) / K + 0.5 * q * (q_trial + (q_trial - q)) / (3.0 * mu) - 0.5 * x * over * over / K
+    c11, c22 = (1.0 - k1 * b1 * b1 / (u1 * N)) / u1, (1.0 - k2 * b2 * b2 / (u2 * N)) / u2
+    c12 = -math.copysign(p0 * k1 * b1 * b2 / (u1 * u2 * N), p)
+    return W, p, 1.0 / u2, c11, c12, c22, lost, steps < MOST and math.isfinite(lost / M)

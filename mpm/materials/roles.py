@@ -109,3 +109,13 @@ def flow_lanes(law, trace, deviator, lam, mu, thermal, theta, J, dt):
     share 1; good 0 where the map failed. dt > 0.
     """
     raise missing(law, "flow_lanes")
+
+
+@role
+def tangent(law, elastic, trace, size, thermal, theta, dt):
+    """The incremental potential of a step and its slopes, of trace and deviator's norm of the trial strain: (W, p, share, c11, c12, c22, dissipated, good).
+
+    W(eps_tr) [J/m3] is convex with dW/deps_tr = tau, p [Pa] the mapped pressure, share = q/q_tr; c11 = dp/dp_tr, c22 = dq/dq_tr and
+    c12 = dp/dq_tr = (3 mu/K)^-1 dq/dp_tr. dissipated >= 0 [J/m3]; good false where the map failed (docs/physics.md 17).
+    """
+    raise missing(law, "tangent")

@@ -17,6 +17,7 @@ from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
+from mpm.scene.implicit import implicit
 from mpm.scene.inventory import ticks
 from mpm.scene.law import law
 from mpm.scene.meeting import cornered, meeting, plan_meetings
@@ -193,6 +194,8 @@ def heat_method(experiment) -> HeatMethod:
     """As the config has it; on hat functions `auto` is implicit: between transfers they bear no explicit step (docs/stability.md, `heat_substeps`)."""
     heat = experiment.method.heat
     kind = type(heat).kind
+    if kind == "auto" and experiment.method.mechanics == "implicit":
+        return HeatMethod("implicit", 2)
     if kind == "auto" and experiment.grid.basis == "linear":
         return HeatMethod("implicit", 2)
     return HeatMethod(kind, getattr(heat, "order", 1), getattr(heat, "tolerance", HeatMethod.tolerance))
@@ -258,6 +261,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
+        implicit=implicit(experiment, space, bodies, met, times),
         watch=watch(experiment, exact),
     )
 

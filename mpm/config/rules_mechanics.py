@@ -1,0 +1,63 @@
+"""Rules of `method.mechanics: implicit`: what it does not do yet is told where it stands."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from mpm.config.explain import Finding
+from mpm.config.rules_frame import known
+from mpm.config.rules_scene import moves
+
+EXPLICIT = "method.mechanics: explicit"
+
+
+def asked(experiment: Any) -> bool:
+    return known(lambda: experiment.method.mechanics == "implicit")
+
+
+def mechanics(experiment: Any) -> Iterator[Finding]:
+    method, grid = experiment.method, experiment.grid
+    if not asked(experiment):
+        if known(lambda: method.mechanics_tolerance != type(method).model_fields["mechanics_tolerance"].default):
+            yield Finding(("method", "mechanics_tolerance"), "explicit steps have no tolerance", "method.mechanics: implicit", on_key=True)
+        return
+    at = ("method", "mechanics")
+    if grid.dimension == 0 or not moves(experiment):
+        yield Finding(at, "no body moves, so there is no mechanics to choose", "no `mechanics`, or an elastic section in a material", on_key=True)
+        return
+    if grid.dimension == 3:
+        yield Finding(at, "implicit mechanics is not known in dimension 3 yet", [EXPLICIT, "dimension 1, 2 or axisymmetric"], given="implicit")
+    if len(experiment.bodies) > 1:
+        yield Finding(at, "implicit mechanics knows one body only, yet", EXPLICIT, given="implicit")
+    if known(lambda: method.frame != "updated"):
+        yield Finding(("method", "frame"), "implicit mechanics is known in the updated frame only", ["updated", EXPLICIT], on_key=True)
+    if known(lambda: grid.basis != "quadratic"):
+        yield Finding(("grid", "basis"), "implicit mechanics is known on quadratic splines only", ["quadratic", EXPLICIT], on_key=True)
+    if known(lambda: method.transfer.kind != "apic"):
+        yield Finding(("method", "transfer"), "implicit mechanics carries velocities by apic", ["apic", EXPLICIT], on_key=True)
+    if known(lambda: method.precision != "float64"):
+        yield Finding(("method", "precision"), "implicit mechanics is computed in double precision", ["float64", EXPLICIT], on_key=True)
+    if known(lambda: method.locking is not None):
+        yield Finding(("method", "locking"), "implicit mechanics has no cure of locking yet", ["no `locking`", EXPLICIT], on_key=True)
+    if known(lambda: method.fracture == "surface"):
+        yield Finding(("method", "fracture"), "implicit mechanics opens no faces", ["warn", "fail", EXPLICIT], on_key=True)
+    if known(lambda: experiment.exact is not None and experiment.exact.kind == "manufactured"):
+        yield Finding(("exact",), "the sources of a manufactured solution are not known to implicit mechanics", EXPLICIT, on_key=True)
+
+
+def mechanics_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
+    if asked(experiment) and known(lambda: item.kind == "contact" and 0 < item.friction < float("inf")):
+        said = "implicit mechanics knows contact without friction, or without sliding"
+        yield Finding(("walls", side, "contact", "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
+
+
+def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    if not asked(experiment) or item.elastic is None:
+        return
+    if item.elastic.kind != "hencky":
+        yield Finding(("materials", name, "elastic", item.elastic.kind), "implicit mechanics knows hencky only, yet", ["hencky", EXPLICIT], on_key=True)
+    if item.flow is not None and known(lambda: item.flow.map != "radial"):
+        said = "implicit mechanics knows the radial map only: the clipped one has no tangent yet"
+        yield Finding(("materials", name, "flow", item.flow.kind, "map"), said, ["radial", EXPLICIT], on_key=True)
+    if item.heating is not None and known(lambda: item.heating.elastic.form == "grid"):
+        said = "implicit mechanics heats particles, along the adiabat"
+        yield Finding(("materials", name, "heating", "elastic", "form"), said, ["adiabat", EXPLICIT], on_key=True)

@@ -1,0 +1,13 @@
+"""Implicit mechanics: steps of seconds where explicit ones follow every wave (docs/physics.md 17).
+
+Each step minimises an incremental potential over nodal displacements, by Newton's method and a banded Cholesky factor, the true inertia left in.
+nodes     weights, numbering, masses and ghost penalty of one step, at the positions of its start
+assemble  potential, residual and tangent of the particles
+contact   the same of pieces of surface at contact walls
+newton    the minimisation: line search, shifts
+deliver   what particles keep of the nodes' answer
+drive     heat and mechanics step by step, in steps chosen by their error; what fails is cut and tried again
+Used only where `method.mechanics` says so: nothing of it is compiled otherwise.
+
+May use   mpm.state, mpm.basis, mpm.boundary, mpm.materials, mpm.heat, mpm.contact, mpm.integrate; SciPy's LAPACK     May not  see configs or records
+"""

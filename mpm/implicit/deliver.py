@@ -1,0 +1,193 @@
+"""What particles keep of an implicit step: positions, velocities, slopes, elastic strain, volume, latches, heat of deformation."""
+
+import math
+
+from mpm.basis import inverse_moment, stencil
+from mpm.boundary import directions
+from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.implicit.assemble import elastic_b, increment, sign, trial
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
+from mpm.integrate.stress_hencky import swells
+from mpm.integrate.traction import share
+from mpm.jit import kernel, role
+from mpm.materials import moduli, settled, tangent, warmed
+from mpm.outcome import INVERTED, OVERSTRETCHED
+from mpm.state import Axisymmetric, Line, Load, NoExchange, NoSource, Plane, Surface
+from mpm.tensors import compose2, push2
+
+
+@role
+def keep_b(space, B, i, xx, yy, zz, xy):
+    """b - 1 to particle i."""
+    raise TypeError(f"no implicit mechanics for {type(space).__name__}")
+
+
+@keep_b.register(Line)
+def _(space, B, i, xx, yy, zz, xy):
+    B[i, 0], B[i, 1], B[i, 2] = xx, yy, zz
+
+
+@keep_b.register(Plane)
+@keep_b.register(Axisymmetric)
+def _(space, B, i, xx, yy, zz, xy):
+    B[i, 0], B[i, 1], B[i, 2], B[i, 3] = xx, yy, zz, xy
+
+
+@role
+def stretch(surface, i, A, D):
+    """F <- f F of particle i, where it owns pieces of surface."""
+    raise TypeError(f"no surface {type(surface).__name__}")
+
+
+@stretch.register(NoExchange)
+def _(surface, i, A, D):
+    return None
+
+
+@stretch.register(Surface)
+def _(surface, i, A, D):
+    if surface.row[i] >= 0:
+        push_forward(surface.F, surface.row[i], A, D)
+
+
+@kernel
+def push_forward(F, i, A, D):
+    """F_i <- (1 + A) F_i."""
+    if D == 1:
+        F[i, 0, 0] *= 1.0 + A[0]
+        return
+    for d in range(2):
+        f0, f1 = F[i, 0, d], F[i, 1, d]
+        F[i, 0, d], F[i, 1, d] = f0 + A[0] * f0 + A[1] * f1, f1 + A[2] * f0 + A[3] * f1
+
+
+@role
+def loads(source, nodes, x, push, dt):
+    """Add dead loads at the end of the step to the nodes' forces `push` (A, D)."""
+    raise TypeError(f"no implicit mechanics with {type(source).__name__}")
+
+
+@loads.register(NoSource)
+def _(source, nodes, x, push, dt):
+    return None
+
+
+@loads.register(Load)
+def _(source, nodes, x, push, dt):
+    D = x.shape[1]
+    for p in range(x.shape[0]):
+        if not source.loaded[p]:
+            continue
+        now = share(source.t[p] + dt, source.ramp)
+        for k in range(nodes.w.shape[1]):
+            for c in range(D):
+                force = source.force[p, c] * nodes.w[p, k]
+                for d in range(D):
+                    for a in range(D):
+                        force += source.dipole[p, c, a] * source.F[p, d, a] * nodes.g[p, k, d]
+                push[nodes.node[p, k], c] += now * sign(nodes, p, k, c) * force
+
+
+@role
+def drag_rate(source):
+    """[1/s]"""
+    raise TypeError(f"no implicit mechanics with {type(source).__name__}")
+
+
+@drag_rate.register(NoSource)
+def _(source):
+    return 0.0
+
+
+@drag_rate.register(Load)
+def _(source):
+    return source.rate
+
+
+@role
+def pass_time(source, i, A, D, dt):
+    """Time and F of a loaded particle at the end of the step."""
+    raise TypeError(f"no implicit mechanics with {type(source).__name__}")
+
+
+@pass_time.register(NoSource)
+def _(source, i, A, D, dt):
+    return None
+
+
+@pass_time.register(Load)
+def _(source, i, A, D, dt):
+    source.t[i] += dt
+    if source.loaded[i]:
+        push_forward(source.F, i, A, D)
+
+
+@kernel
+def deliver(space, body, nodes, u, dt, work, report):
+    """Particles at the end of the step, from displacements u (A, D) of the nodes; `work` of loads [J]. report: mpm.integrate.strain."""
+    particles, D, h = body.particles, directions(space), space.h
+    x, M = particles.x, nodes.w.shape[1]
+    report[WORKED] += work
+    for p in range(x.shape[0]):
+        A = increment(space, nodes, u, x, p)
+        _, _, c, s, trace, d1, d2, d3, size, grow, sound = trial(space, particles.B, A, p)
+        J = particles.J[p] * (1.0 + grow)
+        if not sound or not 1e-3 < J < 1e3:
+            report[CODE], report[PARTICLE] = INVERTED if not sound else OVERSTRETCHED, p
+            return
+        theta = temperature(body.thermal, p)
+        thermal = thermal_stress(body.expansion, body.thermal, p)
+        law = settled(body.flow, particles.J[p])
+        elastic = warmed(body.elastic, theta)
+        _, pressure, part, _, _, _, lost, _ = tangent(law, elastic, trace, size, thermal, theta, dt)
+        before = trace - math.log1p(grow)
+        if lost > 0.0:
+            lam, mu = moduli(elastic)
+            mean = (thermal - pressure) / (3.0 * lam + 2.0 * mu)
+            xx, yy, xy = compose2(math.expm1(2.0 * (mean + part * d1)), math.expm1(2.0 * (mean + part * d2)), c, s)
+            keep_b(space, particles.B, p, xx, yy, math.expm1(2.0 * (mean + part * d3)), xy)
+            trace = 3.0 * mean
+        else:
+            xx, yy, zz, xy = push2(elastic_b(space, particles.B, p), A)
+            keep_b(space, particles.B, p, xx, yy, zz, xy)
+            mean, part = trace / 3.0, 1.0
+        report[STRAIN] = min(report[STRAIN], mean + part * min(d1, d2, d3))
+        particles.J[p] = J
+        density = particles.m[p] / particles.V0[p]
+        gained = heat_locally(body.heating, body.thermal, p, density, trace - before, lost)
+        if swells(body.expansion):
+            report[SWELLED] += particles.V0[p] * thermal * (trace - before)
+        report[HEATED] += particles.V0[p] * gained
+        report[DISSIPATED] += particles.V0[p] * lost
+        latch(body.expansion, body.thermal, p)
+        stretch(body.surface, p, A, D)
+        pass_time(body.source, p, A, D, dt)
+        largest = max(abs(A[0]), abs(A[1]), abs(A[2]), abs(A[3]), abs(A[4]))
+        report[RATE] = max(report[RATE], largest)
+        report[SWELL] = max(report[SWELL], J)
+        slopes(space, particles, nodes, u, p, dt, M, D, h)
+        speed = 0.0
+        for a in range(D):
+            speed += particles.v[p, a] ** 2
+            x[p, a] += dt * particles.v[p, a]
+        report[SPEED] = max(report[SPEED], speed)
+
+
+@kernel
+def slopes(space, particles, nodes, u, p, dt, M, D, h):
+    """v and C of particle p: the mean rate of the step, as APIC gathers it."""
+    for a in range(D):
+        particles.v[p, a] = 0.0
+        for d in range(D):
+            particles.C[p, a, d] = 0.0
+    one, two = stencil(space.basis, particles.x[p, 0] / h), stencil(space.basis, particles.x[p, D - 1] / h)
+    last = len(two[1]) if D == 2 else 1
+    for k in range(M):
+        i, j = k // last, k % last
+        n, w = nodes.node[p, k], nodes.w[p, k] / dt
+        for a in range(D):
+            v = w * sign(nodes, p, k, a) * u[n, a]
+            particles.v[p, a] += v
+            particles.C[p, a, 0] += v * one[3][i] * inverse_moment(space.basis) / h
+            if D == 2:
+                particles.C[p, a, 1] += v * two[3][j] * inverse_moment(space.basis) / h

@@ -1,0 +1,161 @@
+"""Heat and mechanics step by step, at steps of their own choosing (docs/physics.md 17).
+
+A step   heat over dt (as the run gives it), laws at the new temperature, Newton's method, particles.
+Error    rms over particles of |u - predictor| dt/(dt + dt_before): predictor is what the particles' last velocities would move. The next step is
+         dt clip(0.9 sqrt(tolerance L/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
+         stresses are slightly out of balance with the new weights, and the move that mends this does not shrink with dt. The first step is exempt:
+         a body that is put on its wall must sag.
+Failure  everything as before the step, a quarter of dt; below LEAST of the first step the run ends (no_equilibrium).
+"""
+
+import copy
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mpm.boundary import directions
+from mpm.contact.skin import lay_skins, new_skin
+from mpm.implicit.contact import STIFFNESS, may_touch
+from mpm.implicit.deliver import deliver, drag_rate, loads
+from mpm.implicit.newton import Problem, minimise
+from mpm.implicit.nodes import new_nodes
+from mpm.integrate.strain import CODE, PARTICLE, STEP
+from mpm.integrate.timestep import limits, stiffest
+from mpm.memory import arrays, fill
+from mpm.outcome import BUDGET, COMPLETED, NO_EQUILIBRIUM, Outcome, outcome
+from mpm.state import Surface
+
+CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
+TOLD = ("rejected", "failed", "iterations", "shifts", "deepest")
+LEAST = 1e-4  # of the first step that was tried
+REJECT = 2.0  # of the tolerance: an error from which a step is made again
+CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver")  # what a shorter step may cure
+
+
+@dataclass
+class Implicit:
+    """How a scene steps implicitly. `size` is the body's largest extent [m]."""
+
+    tolerance: float
+    size: float
+    first: float  # step to begin with [s]
+    stops: np.ndarray  # (3, 2) friction of contact walls, below 0 none
+    walls: np.ndarray  # (3, 2) kinds
+
+    def begin(self) -> dict:
+        """What a run counts, and what its next step is to be: steps made again for their error (rejected) or cut (failed), sums, extrema."""
+        return {"next": self.first, "last": 0.0, "again": 0, "rejected": 0, "failed": 0, "iterations": 0, "shifts": 0, "deepest": 0.0}
+
+    def advance(self, *given) -> Outcome:
+        """See `advance`."""
+        return advance(*given)
+
+
+def advance(scene, clock, guards, buffers, until: float, warm, recorder, look) -> Outcome:
+    """Steps up to `until`. warm(scene, clock, buffers, begun, dt, limits) is the run's heat step; look() -> bool asks whether to stop."""
+    clock.told = clock.told or scene.implicit.begin()
+    while until - clock.time > 1e-12 * until:
+        if not (sound := guards.block(scene, clock)).ok:
+            return sound
+        told, left = clock.told, until - clock.time
+        count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)))
+        dt, before = left / count, keep(scene, clock)
+        error, found = one_step(scene, clock, buffers, dt, warm)
+        if not found.ok or too_far(scene, told, error):
+            told = put_back(scene, clock, before)
+            if not found.ok and (dt * CUT < LEAST * scene.implicit.first or found.kind not in CURED):
+                return found
+            told["failed" if not found.ok else "rejected"] += 1
+            told["again"], told["next"] = int(found.ok), dt * (factor(scene.implicit, error) if found.ok else CUT)
+            continue
+        told["next"], told["last"], told["again"] = dt * (factor(scene.implicit, error) if told["last"] > 0 else 1.0), dt, 0
+        binding = "time.step" if scene.step else "error of the step"
+        clock.bound[binding] = clock.bound.get(binding, 0) + 1
+        clock.steps += 1
+        clock.time = until if count == 1 else clock.time + dt
+        recorder.watch(scene, clock.time)
+        if look():
+            return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
+    scene.facts |= {"mechanics": "implicit", **{name: clock.told[name] for name in TOLD}}
+    return guards.whole(scene, clock)
+
+
+def one_step(scene, clock, buffers, dt: float, warm) -> tuple[float, Outcome]:
+    """Heat, then mechanics; the other way round where heat passes by touch, as motion says who touches."""
+    later = scene.meeting is not None and scene.meeting.warms
+    now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+    error, found = 0.0, outcome(COMPLETED) if later else warm(scene, clock, buffers, clock.time, dt, now)
+    if found.ok:
+        error, found = mechanical_step(scene, clock, dt)
+    return error, warm(scene, clock, buffers, clock.time, dt, now) if found.ok and later else found
+
+
+def factor(how: Implicit, error: float) -> float:
+    """By how much the step after one with this error [m] may be longer."""
+    return min(GROW, max(SHRINK, SAFE * math.sqrt(how.tolerance * how.size / error))) if error > 0 else GROW
+
+
+def too_far(scene, told: dict, error: float) -> bool:
+    """Whether a step is to be made again for its error."""
+    free = scene.step is not None or told["again"] or told["last"] == 0
+    return not free and error > REJECT * scene.implicit.tolerance * scene.implicit.size
+
+
+def keep(scene, clock) -> tuple:
+    """All that a step may change."""
+    touched = scene.meeting.touching.touched.copy() if scene.meeting is not None else None
+    return {path: array.copy() for path, array in arrays(scene.bodies).items()}, copy.deepcopy(vars(clock)), touched
+
+
+def put_back(scene, clock, before: tuple) -> dict:
+    """The state before a step; what Newton's method was asked stays counted."""
+    bodies, past, touched = before
+    counts = {name: clock.told[name] for name in ("iterations", "shifts")}
+    fill(scene.bodies, bodies)
+    clock.recall(past)
+    clock.told |= counts
+    if touched is not None:
+        scene.meeting.touching.touched[:] = touched
+    return clock.told
+
+
+def mechanical_step(scene, clock, dt: float) -> tuple[float, Outcome]:
+    """One step of dt: (error [m], outcome); particles move only where it is ok."""
+    how, told, body = scene.implicit, clock.told, scene.bodies[0]
+    lam, mu = stiffest(body)
+    nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity, mu)
+    pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source)
+    loads(body.source, nodes, body.particles.x, pull, dt)
+    nodes.push[:] += pull
+    skin = new_skin(len(scene.gravity), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
+    lay_skins(scene.space, scene.bodies, skin)
+    pushed = may_touch(scene.space, skin, how.stops, STIFFNESS * (lam + 2 * mu) / scene.space.h)
+    guess = dt * nodes.v
+    answer = minimise(Problem(scene.space, body, nodes, pushed, dt, drag), guess)
+    told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
+    if answer.u is None:
+        return math.inf, outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
+    astray = answer.u - guess
+    gap = np.einsum("pk,pkc->pc", nodes.w, signed(nodes, astray))
+    error = math.sqrt(float(np.mean(np.sum(gap * gap, axis=1)))) * dt / (dt + (told["last"] or dt))
+    work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2))
+    clock.reset()
+    report = clock.reports[0]
+    deliver(scene.space, body, nodes, answer.u, dt, work, report)
+    if report[CODE] != 0:
+        report[STEP] = 0
+        return error, outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
+    clock.gather(dt)
+    told["deepest"] = max(told["deepest"], float(answer.depth.max(initial=0.0)))
+    if scene.meeting is not None:
+        for row in np.unique(pushed.row[answer.depth > 0]):
+            touched = scene.meeting.touched(0, int(row))
+            touched[np.unique(pushed.piece[(answer.depth > 0) & (pushed.row == row)])] += dt
+    return error, outcome(COMPLETED)
+
+
+def signed(nodes, u: np.ndarray) -> np.ndarray:
+    """Displacements (N, M, D) that each particle sees on its nodes."""
+    turns = np.where(nodes.flip[:, :, None] >> np.arange(u.shape[1]) & 1, -1.0, 1.0)
+    return turns * u[nodes.node]

@@ -1,0 +1,121 @@
+"""The minimum of one step's incremental potential over nodal displacements: Newton's method, banded Cholesky (LAPACK), Armijo's line search.
+
+    Pi(u) = sum V0 W - sum f.u + sum m |u - dt v|^2/(2 dt^2) + rate sum m |u|^2/(2 dt) + ghost penalty + walls
+The part of the particles is convex in the trial strain, not in u (large rotations and stresses may tip a tangent): then a share of the diagonal is added.
+A step is done where particles move by less than CLOSE cells of one full Newton step, or where the square of that move says that the next will (quadratic).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dpbtrf, dpbtrs
+
+from mpm.implicit.assemble import assemble
+from mpm.implicit.contact import push_back
+from mpm.implicit.nodes import third_differences
+
+CLOSE, SQUARE, MOST_MOVE = 1e-5, 1e-6, 0.5  # cells
+ITERATIONS, HALVINGS, SHIFTS = 30, 30, 12
+FIRST_SHIFT, ARMIJO = 1e-6, 1e-4
+
+
+@dataclass
+class Answer:
+    """Displacements u (A, D), or None where Newton's method failed; counts; how deep pieces are in walls."""
+
+    u: np.ndarray | None
+    iterations: int
+    shifts: int
+    depth: np.ndarray
+
+
+@dataclass
+class Problem:
+    """What a step minimises."""
+
+    space: object
+    body: object
+    nodes: object
+    pushed: object
+    dt: float
+    drag: float
+
+    def potential(self, u: np.ndarray, r: np.ndarray, band: np.ndarray, depth: np.ndarray, want: bool) -> float:
+        """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (lower band)."""
+        nodes, dt = self.nodes, self.dt
+        if want:
+            r[:], band[:] = 0.0, 0.0
+        total = assemble(self.space, self.body, nodes, u, dt, r, band, want)
+        if not math.isfinite(total):
+            return math.inf
+        total += third_differences(nodes, u, r, band, want)
+        total += push_back(self.space, nodes, self.pushed, u, r, band, want, depth)
+        late, inert, slow = u - dt * nodes.v, nodes.m[:, None] / (dt * dt), self.drag * nodes.m[:, None] / dt
+        total += float(0.5 * np.sum(inert * late * late) + 0.5 * np.sum(slow * u * u) - np.sum(nodes.push * u))
+        if want:
+            r += inert * late + slow * u - nodes.push
+            free = nodes.eq >= 0
+            band[nodes.eq[free], 0] += np.broadcast_to(inert + slow, u.shape)[free]
+        return total
+
+    def move(self, step: np.ndarray) -> float:
+        """The largest move of a particle [m]: at most that of its heaviest node, weighted."""
+        size = np.sqrt(np.sum(step * step, axis=1))
+        return float(np.max(np.einsum("pk,pk->p", self.nodes.w, size[self.nodes.node])))
+
+
+def minimise(problem: Problem, guess: np.ndarray) -> Answer:
+    """The displacements of a step, from a guess (A, D) that is zero where walls hold."""
+    nodes, h = problem.nodes, problem.space.h
+    free, n = nodes.eq >= 0, nodes.unknowns
+    r, band, depth = np.empty(guess.shape), np.empty((n, nodes.band + 1)), np.zeros(len(problem.pushed.owner))
+    u, shifts = guess.copy(), 0
+    Pi = problem.potential(u, r, band, depth, True)
+    if not math.isfinite(Pi) and u.any():
+        u[:] = 0.0
+        Pi = problem.potential(u, r, band, depth, True)
+    if not math.isfinite(Pi):
+        return Answer(None, 0, 0, depth)
+    for count in range(1, ITERATIONS + 1):
+        step, tried = newton_step(problem, u, r, band, depth)
+        shifts += tried
+        if step is None:
+            return Answer(None, count, shifts, depth)
+        full = problem.move(step)
+        share = min(1.0, MOST_MOVE * h / full) if full > 0 else 1.0
+        slope, small = float(np.sum(r[free] * step[free])), full < CLOSE * h
+        for _ in range(HALVINGS):
+            new = problem.potential(u + share * step, r, band, depth, False)
+            if small or new <= Pi + ARMIJO * share * slope + 1e-13 * abs(Pi):
+                break
+            share *= 0.5
+        else:
+            return Answer(None, count, shifts, depth)
+        if not math.isfinite(new):
+            return Answer(None, count, shifts, depth)
+        u += share * step
+        if small or (count > 1 and share == 1.0 and not tried and full * full / h < SQUARE * h):
+            return Answer(u, count, shifts, depth)
+        Pi = problem.potential(u, r, band, depth, True)
+    return Answer(None, ITERATIONS, shifts, depth)
+
+
+def newton_step(problem: Problem, u, r, band, depth) -> tuple[np.ndarray | None, int]:
+    """(-K^-1 r on the nodes, shifts that it took); None where K stays indefinite. band is spent."""
+    nodes, shift = problem.nodes, 0.0
+    free = nodes.eq >= 0
+    for tried in range(SHIFTS):
+        if tried:
+            shift = FIRST_SHIFT if tried == 1 else 10 * shift
+            problem.potential(u, r, band, depth, True)
+            band[:, 0] += shift * np.abs(band[:, 0])
+        factor, info = dpbtrf(band.T, lower=1, overwrite_ab=1)
+        if info == 0:
+            right = np.empty(nodes.unknowns)
+            right[nodes.eq[free]] = -r[free]
+            found, _ = dpbtrs(factor, right, lower=1)
+            step = np.zeros(u.shape)
+            step[free] = found[nodes.eq[free]]
+            return (step, tried) if np.isfinite(found).all() else (None, tried)
+    return None, SHIFTS

@@ -1,0 +1,61 @@
+"""A column of Hencky material (lam = 0) under its own weight, from no stress to equilibrium by implicit steps, against the closed form."""
+
+import numpy as np
+import pytest
+
+import mpm
+
+LOAD = 0.29  # rho g H/E
+
+
+def column(n, **time):
+    return mpm.load(
+        {
+            "grid": {"dimension": 1, "size": [1.5], "cell": 1 / n},
+            "bodies": {"column": {"shape": {"box": {"lower": [0], "upper": [1]}}, "material": "soft"}},
+            "materials": {"soft": {"density": 1e3, "elastic": {"hencky": {"lam": 0, "mu": 5e4}}}},
+            "gravity": [-LOAD * 1e2],
+            "time": {"end": 1e5, "step": 1e5},
+            "output": {"every": 1e5},
+            "method": {"mechanics": "implicit", "gradient": "bspline"},
+        }
+        | time
+    )
+
+
+def top_and_middle():
+    """Mean position of the material: int x dX of x = int exp(-W)."""
+    from scipy.special import lambertw
+
+    X = (np.arange(20000) + 0.5) / 20000
+    stretch = np.exp(-lambertw(LOAD * (1 - X)).real)
+    return float(np.mean(np.cumsum(stretch) / 20000 - 0.5 * stretch / 20000))
+
+
+def test_one_step_is_of_order_two():
+    errors = []
+    for n in (4, 8, 16, 32):
+        run = mpm.run(column(n))
+        assert int(run["/"].status) == 0
+        errors.append(abs(float(run["/"].position_mean_x) - top_and_middle()))
+    assert errors[-1] < 6.5e-5
+    assert np.log2(errors[0] / errors[-1]) / 3 > 1.8
+
+
+def test_a_floating_body_does_not_drift():
+    """Without a load and with the true inertia, a body that rests stays where it is, however long the step."""
+    run = mpm.run(column(16, gravity=[0.0], bodies={"column": {"shape": {"box": {"lower": [0.2], "upper": [1.1]}}, "material": "soft"}},
+                         method={"mechanics": "implicit"}))  # fmt: skip
+    x = run["series"].position_mean_x.values
+    assert abs(x[-1] - x[0]) < 1e-10 / 16
+
+
+@pytest.mark.parametrize("end", [1.0])
+def test_free_fall(end):
+    """Backward Euler keeps the impulse to round-off: v = g t, and falls g dt t/2 too far."""
+    run = mpm.run(column(16, gravity=[-0.01], bodies={"column": {"shape": {"box": {"lower": [0.3], "upper": [1.1]}}, "material": "soft"}},
+                         method={"mechanics": "implicit"}, time={"end": end, "step": 0.1}, output={"every": 0.1}))  # fmt: skip
+    series = run["series"]
+    np.testing.assert_allclose(series.momentum_x, -0.01 * series.time * 800, rtol=0, atol=1e-9)
+    fallen = series.position_mean_x.values[0] - series.position_mean_x.values[-1]
+    assert fallen == pytest.approx(0.5 * 0.01 * end * (end + 0.1), rel=1e-8)

@@ -1,0 +1,68 @@
+"""Each flow law's incremental potential: dW/deps_tr is the stress, and the slopes are those of finite differences."""
+
+import numpy as np
+import pytest
+
+from mpm.materials import FLOW, Constant, EllipseClipped, EllipseRadial, Hencky, NoFlow, flow, stress, tangent
+
+E = Hencky(3.0, 5.0)
+K = E.lam + 2 * E.mu / 3
+LAWS = {
+    "no_flow": NoFlow(),
+    "viscous": EllipseRadial(Constant(0.3), Constant(0.8), Constant(2.0)),
+    "nearly rigid plastic": EllipseRadial(Constant(0.2), Constant(30.0), Constant(1e-3)),
+    "rate independent": EllipseRadial(Constant(0.25), Constant(0.5), Constant(0.0)),
+}
+STATES = np.random.default_rng(7).normal(scale=0.15, size=(200, 4))
+
+
+def measures(e):
+    d = e - e.mean()
+    return float(e.sum()), float(np.sqrt(d @ d)), d
+
+
+def answer(law, e, thermal):
+    trace, size, d = measures(e)
+    return *tangent(law, E, trace, size, thermal, 300.0, 0.7), d, size
+
+
+def test_every_flow_law_is_here_or_refused():
+    assert {type(law) for law in LAWS.values()} == set(FLOW) - {EllipseClipped}
+    with pytest.raises(TypeError, match="EllipseClipped does not know `tangent`"):
+        tangent(EllipseClipped(Constant(1.0), Constant(1.0), Constant(1.0)), E, 0.1, 0.1, 0.0, 300.0, 1.0)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+def test_stress_is_that_of_the_return_map_and_the_gradient_of_the_potential(law):
+    for *e, thermal in STATES:
+        e = np.array(e)
+        _, p, share, _, _, _, lost, good, d, _ = answer(law, e, thermal)
+        n1, n2, n3, dissipated, ok = flow(law, E, *e, thermal, 300.0, 0.7)
+        tau = 2 * E.mu * share * d - p
+        assert good and ok
+        np.testing.assert_allclose(tau, stress(E, n1, n2, n3, thermal), rtol=0, atol=1e-12)
+        assert lost == pytest.approx(dissipated, rel=1e-9, abs=1e-15)
+        slope = [(answer(law, e + h, thermal)[0] - answer(law, e - h, thermal)[0]) / 2e-6 for h in 1e-6 * np.eye(3)]
+        np.testing.assert_allclose(slope, tau, rtol=0, atol=2e-8)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+def test_slopes_are_those_of_differences(law):
+    kinks = 0
+    for *e, thermal in STATES:
+        e = np.array(e)
+        _, _, share, c11, c12, c22, _, _, d, size = answer(law, e, thermal)
+        n = d / size
+        a = K * c11 - np.sqrt(6) * E.mu * c12 * (n[:, None] + n) + 2 * E.mu * (c22 - share) * np.outer(n, n) + 2 * E.mu * share * (np.eye(3) - 1 / 3)
+
+        def tau(e, thermal=thermal):
+            _, p, share, *_, d, _ = answer(law, e, thermal)
+            return 2 * E.mu * share * d - p
+
+        slope = np.stack([(tau(e + h) - tau(e - h)) / 2e-6 for h in 1e-6 * np.eye(3)], axis=1)
+        yields = {answer(law, e + h, thermal)[6] > 0 for h in 1e-6 * np.vstack([np.eye(3), -np.eye(3)])}
+        kinks += len(yields) > 1
+        if len(yields) == 1:
+            np.testing.assert_allclose(a, slope, rtol=0, atol=4e-6 * np.abs(a).max())
+        assert np.linalg.eigvalsh(a).min() > -1e-9
+    assert kinks <= 2
