@@ -14,6 +14,7 @@ from mpm_cli.collect import collect
 from mpm_cli.compare import compare
 from mpm_cli.export import export
 from mpm_cli.info import info
+from mpm_cli.movie import movie
 from mpm_cli.plan import plan
 from mpm_cli.plot import plot
 from mpm_cli.run import run
@@ -26,7 +27,7 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, export, bench, schema, info, warmup)
+COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, movie, export, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(
@@ -75,7 +76,7 @@ def told(error: Exception) -> int:
 
     # named without importing what the command did not need
     places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
-    places += (("mpm.results", "UnknownPoint"), ("mpm.exports", "ExportError"))
+    places += (("mpm.results", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"))
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))

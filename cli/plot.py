@@ -4,8 +4,21 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from mpm_cli.options import Folder, folder
+from mpm_cli.options import POINT, Folder, folder
 from mpm_cli.talk import say
+
+FIGURE = "File for the figure, if there is only one."
+OF = "finals: the final to draw. snapshot: the field that colours tell."
+OVER = "finals: the swept parameter along the figure."
+AT = "snapshot: times to show [s], e.g. 5,10."
+
+
+def times(text: str) -> list[float]:
+    """`5,10` as numbers."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise typer.BadParameter(f"{text!r} are no times; say seconds, as 5,10") from None
 
 
 def plot(
@@ -14,13 +27,27 @@ def plot(
         list[str] | None,
         typer.Argument(metavar="[NAME...]", help="Figures to draw: overview, series, finals, snapshot.  [default: overview]", show_default=False),
     ] = None,
-    path: Annotated[
-        Path | None, typer.Option("-o", "--out", metavar="FILE", parser=folder, help="File for the figure, if there is only one.", show_default=False)
-    ] = None,
+    path: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", parser=folder, help=FIGURE, show_default=False)] = None,
     svg: Annotated[bool, typer.Option("--svg", help="Write OUT/<name>.svg instead of .png.")] = False,
+    of: Annotated[str | None, typer.Option("--of", metavar="NAME", help=OF, show_default=False)] = None,
+    over: Annotated[str | None, typer.Option("--over", metavar="NAME", help=OVER, show_default=False)] = None,
+    point: Annotated[list[str] | None, typer.Option("--point", metavar="POINT", help=f"snapshot: {POINT}", show_default=False)] = None,
+    at: Annotated[list | None, typer.Option("--at", metavar="T,T", parser=times, help=AT, show_default=False)] = None,
 ) -> None:
-    """Draw figures of a sweep as PNG or SVG."""
+    """Draw figures of a sweep or a run as PNG or SVG.
+
+    For example: mpm plot OUT finals --of extent_x --over eta; mpm plot OUT snapshot --of stress_mises --at 1,5.
+    """
     from mpm.plots import figures
 
-    for written in figures(out, names or None, path, svg):
+    if names == ["snapshot"]:
+        from mpm.movies import still
+        from mpm.plots import dataset_of
+
+        target = path or dataset_of(out).parent / f"snapshot{'.svg' if svg else '.png'}"
+        still(out, point or (), target, of, [when for part in at or () for when in (part if isinstance(part, list) else [part])])
+        say(str(target))
+        return
+    more = {name: value for name, value in (("of", of), ("over", over)) if value is not None}
+    for written in figures(out, names or None, path, svg, **more):
         say(str(written))

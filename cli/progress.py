@@ -1,9 +1,11 @@
 """Progress: a bar with the time left on a terminal; plain lines, one a finished point, off it or with CI, NO_COLOR or TERM=dumb."""
 
+import contextlib
 import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
 from typing import Any, TextIO
 
 from mpm_cli.talk import end, shown
@@ -111,6 +113,18 @@ class Bar(Reporter):
 
     def close(self) -> None:
         self.progress.stop()
+
+
+@contextlib.contextmanager
+def counter(what: str, as_json: bool, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """A bar for something that is made piece by piece; nothing off a terminal."""
+    where = reporter(as_json, quiet)
+    if not isinstance(where, Bar):
+        yield lambda done, total: None
+        return
+    with where.progress as bar:
+        task = bar.add_task(what, total=None, left="")
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def clock(seconds: float) -> str:

@@ -19,6 +19,7 @@ _PLACES = {
     "sweep": "mpm.sweep.api",
     "particles": "mpm.sweep.ragged",
     "export": "mpm.exports",
+    "movie": "mpm.movies",
     "plan": "mpm.sweep.cases",
     "estimate": "mpm.costs",
     "run_point": "mpm.runner",

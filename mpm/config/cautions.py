@@ -13,7 +13,7 @@ MOST_TOLD = 5
 
 
 def cautions(experiment: Any, root: Node) -> list[str]:
-    """Temperatures that are numbers without a unit, and colder than the applications of this code: 20 is 20 K."""
+    """Temperatures that are numbers without a unit, and colder than the applications of this code: 20 is 20 K. Snapshots that no picture can show."""
     found = []
     for path, quantity in temperatures(experiment):
         for node in numbers(root, path):
@@ -22,7 +22,18 @@ def cautions(experiment: Any, root: Node) -> list[str]:
                 said = f"{value} without a unit is {value} K, {node.value - 273.15:.4g} °C; say '{value} degC' or '{value} K'"
                 found.append(str(node.origin.problem(node.line, node.column, place, said)))
     rest = len(found) - MOST_TOLD
-    return found[:MOST_TOLD] + ([f"and {rest} more temperatures without a unit"] if rest > 0 else [])
+    return found[:MOST_TOLD] + ([f"and {rest} more temperatures without a unit"] if rest > 0 else []) + undrawn(experiment, root)
+
+
+def undrawn(experiment: Any, root: Node) -> list[str]:
+    """Snapshots of particles without their positions."""
+    shots, node = experiment.output.snapshots, root
+    if shots is None or not shots.particles or "position" in shots.particles:
+        return []
+    for key in ("output", "snapshots", "particles"):
+        node = node.child(key) if node is not None else None
+    said = "without position the snapshots cannot be drawn, made a movie of or exported; add position"
+    return [str(node.origin.problem(node.line, node.column, "output.snapshots.particles", said))] if node is not None else []
 
 
 def temperatures(experiment: Any) -> Iterator[tuple[Path, Quantity]]:

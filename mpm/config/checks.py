@@ -90,6 +90,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (output.probe_home, output.probes),
     (output.observable, output.observables),
     (output.apart, once),
+    (output.overview, once),
     (output.snapshots, once),
     (scene.method, once),
     (output.exact, once),

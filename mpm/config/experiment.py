@@ -131,6 +131,8 @@ class Experiment(Model):
             data.pop("offset", None)
         if section == "walls":
             data = {side: wall for side, wall in data.items() if wall != {"slip": {}}}
+        if section == "output":
+            data.pop("overview", None)  # cannot change the result of a point
         if section == "output" and "probes" in data:
             data["probes"] = dict(sorted(data["probes"].items()))
         return dict(sorted(data.items())) if section in ("materials", "walls") else data

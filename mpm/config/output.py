@@ -24,6 +24,7 @@ class Output(Model):
     every: Time = doc(None, description="time between samples of the series; end/100 unless given", validate_default=False)
     probes: dict[str, Point] = doc({}, description="points that are followed, by name")
     observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
+    overview: tuple[str, ...] = doc((), description="observables that the overview shows, the first first")
     snapshots: Snapshots | None = None
     measured: dict[str, Measured] = doc({}, description="measured curves by name: drawn, compared with the run (misfit_<name>), fitted by `mpm fit`")
 

@@ -84,6 +84,15 @@ def apart(experiment: Any) -> Iterator[Finding]:
             yield Finding(("output", "observables", index), said, "a probe of another name", given=name)
 
 
+def overview(experiment: Any) -> Iterator[Finding]:
+    """What the overview shows is recorded."""
+    known = list(experiment.output.observables)
+    for index, name in enumerate(experiment.output.overview):
+        if name not in known:
+            path, allowed = ("output", "overview", index), known or "an observable that is listed"
+            yield Finding(path, "it is not among output.observables", allowed, near(name, known), given=name)
+
+
 def probes(experiment: Any) -> Iterator[tuple]:
     yield from list(experiment.output.probes.items())
 

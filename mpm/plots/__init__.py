@@ -40,11 +40,14 @@ def overview(tree: Any, path: Path | str | None = None) -> Any:
     return _finish(_draw(tree, "overview"), path)
 
 
-def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Path | str | None = None, svg: bool = False) -> list[Path]:
+def figures(
+    out: Path | str, names: str | Iterable[str] | None = None, path: Path | str | None = None, svg: bool = False, of: str | None = None, over: str | None = None
+) -> list[Path]:
     """Figures of the dataset in a folder, or of a dataset file; the paths written.
 
     names   of KINDS, one or several; the overview unless given
     path    the file of a single figure; else <folder>/<name>.png (.svg with `svg`)
+    of      the final that `finals` and the overview draw;  over: the swept parameter along them
     Raises UnknownFigure for a name, FileNotFoundError where there is no dataset.
     """
     wanted = [names or "overview"] if names is None or isinstance(names, str) else list(names) or ["overview"]
@@ -59,7 +62,7 @@ def figures(out: Path | str, names: str | Iterable[str] | None = None, path: Pat
     tree, suffix = _open(dataset), ".svg" if svg else ".png"
     targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]
     for name, target in zip(wanted, targets, strict=True):
-        _finish(_draw(tree, name), target)
+        _finish(_draw(tree, name, of, over), target)
     return targets
 
 
@@ -81,13 +84,18 @@ def _open(path: Path) -> Any:
         return tree.load()
 
 
-def _draw(tree: Any, name: str) -> Any:
+def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) -> Any:
     """A figure by its name."""
     from mpm.plots import layouts, snapshot
     from mpm.plots.view import View
 
     kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals, "snapshot": snapshot.snapshot}
-    return kinds[name](View(tree))
+    view = View(tree)
+    for asked, known, what in ((of, view.finals, "final"), (over, [axis.name for axis in view.axes], "swept parameter")):
+        if asked is not None and asked not in known:
+            raise UnknownFigure(f"there is no {what} {asked!r}; there are {', '.join(known) or 'none'}")
+    view.wanted, view.along = of, over
+    return kinds[name](view)
 
 
 def _finish(fig: Any, path: Path | str | None) -> Any:

@@ -43,7 +43,7 @@ def nothing(view: View) -> Any:
 def arrange(view: View, name: str = "") -> tuple[Axis, Axis | None, list[Axis]]:
     """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along; for errors the cell or the step."""
     fine = ("cell", "step") if name.startswith("error_") else ()
-    order = sorted(view.axes, key=lambda axis: (axis.category, axis.name not in fine, -axis.size))
+    order = sorted(view.axes, key=lambda axis: (axis.name != view.along, axis.category, axis.name not in fine, -axis.size))
     return order[0], order[1] if len(order) > 1 else None, order[2:]
 
 
@@ -143,11 +143,11 @@ def all_finals(view: View) -> Any:
         if view.design is not None:
             from mpm.plots.sample import scatter
 
-            return scatter(view, most=6)
+            return scatter(view, most=1 if view.wanted else 6)
         if not view.axes or not view.finals:
             return empty(view, "One point: its finals are numbers, not a figure (mpm run prints them).")
         x, lines, _ = arrange(view)
-        names = [name for name in view.finals if name != "heat_ledger"][:6]
+        names = [view.wanted] if view.wanted else [name for name in view.finals if name != "heat_ledger"][:6]
         columns = min(3, len(names))
         rows = math.ceil(len(names) / columns)
         fig = figure(view.title, 4.6 if rows == 1 else 3.9 * rows)

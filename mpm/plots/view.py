@@ -130,6 +130,7 @@ class View:
     """A dataset tree as figures see it."""
 
     def __init__(self, tree: Any):
+        self.wanted = self.along = None  # the final that was asked for, and the parameter that it is to be drawn over
         self.root = tree.to_dataset()
         self.groups = {name: tree[name].to_dataset() for name in ("series", "grid", "particles") if name in tree.children}
         self.series = self.groups.get("series")
@@ -212,12 +213,14 @@ class View:
             str(name) for name in self.series.data_vars if str(name).startswith("temperature_") and str(name).split("_")[-1] not in ("mean", "min", "max")
         ]
 
-    @cached_property
+    @property
     def finals(self) -> list[str]:
         """Finals with a number somewhere, the most interesting first: errors, times, what the config lists, probes, the rest."""
         names = [str(name) for name, row in self.root.data_vars.items() if name not in BOOKKEEPING and row.dims == self.dims and row.dtype.kind in "fiu"]
         there = [name for name in names if np.isfinite(self.root[name].values).any()]
-        wanted = ["error_l2", *(name for name in there if name.startswith("time_to_")), *self.listed, *self.probes, *there]
+        asked = [dataset_name(name) for name in (self.config.get("output") or {}).get("overview") or []]
+        first = [*filter(None, [self.wanted]), *asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
+        wanted = [*first, *self.listed, *self.probes, *there]
         return [name for name in dict.fromkeys(wanted) if name in there]
 
     def label(self, name: str, units: str) -> str:

@@ -1,0 +1,190 @@
+"""One panel of a movie or a still: a snapshot's particles or its field on the grid, in the domain with its walls."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+
+from mpm.movies import MovieError
+from mpm.plots import words
+from mpm.plots.style import INK, QUIET
+from mpm.records.variables import VARIABLES
+from mpm.results import Point, Results
+from mpm.text import visible
+
+FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
+SAMPLES = 12  # snapshots that the limits of colour and space are taken from
+SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
+
+
+@dataclass(frozen=True)
+class Look:
+    """What all panels share."""
+
+    field: str
+    on_grid: bool
+    dimension: Any
+    mirrored: bool
+    size: list[float]  # of the domain [m]
+    box: np.ndarray  # (2, 2): lower and upper corner of what is shown [m]
+    length: words.Scale
+    scale: words.Scale
+    clock: words.Scale
+    mappable: Any
+    label: str
+    axes: dict[str, np.ndarray]
+    walls: dict[str, str]
+
+    @property
+    def aspect(self) -> float:
+        """Height over width."""
+        width, height = self.box[1] - self.box[0]
+        return float(height / max(width, 1e-300))
+
+
+def looks(found: Results, shown: list[Point], of: str | None) -> Look:
+    """The look that fits all points: limits of space and colour from a few of their snapshots."""
+    some = [point.shots[int(k)] for point in shown for k in np.unique(np.linspace(0, len(point.shots) - 1, SAMPLES).round())]
+    field, on_grid = chosen(some[0], of)
+    values = np.concatenate([valued(frame, field, on_grid).ravel() for frame in some])
+    units = VARIABLES[field].units if field in VARIABLES else "1"
+    scale = words.scale(values, units, words.is_temperature(field))
+    finite = scale(values[np.isfinite(values)])
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
+        low, high = low - 0.5, high + 0.5  # one value everywhere
+    dimension, config = found.dimension, found.view.config
+    size = [float(length) for length in (config.get("grid") or {}).get("size", ())]
+    axes, mirrored = dict(shown[0].shots.axes), dimension == "axisymmetric"
+    places = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(axes, dimension)]
+    places = np.concatenate([place[:, :2] for place in places])
+    box = np.array([places.min(axis=0), places.max(axis=0)])
+    if mirrored:
+        box[0, 0], box[1, 0] = -np.abs(box[:, 0]).max(), np.abs(box[:, 0]).max()
+    margin = 0.06 * max(np.ptp(box, axis=0).max(), 1e-12)
+    box = box + np.array([[-margin], [margin]])
+    name = words.title_case(words.short(VARIABLES[field].long_name)) if field in VARIABLES else field
+    bare = ScalarMappable(Normalize(low, high), matplotlib.colormaps["inferno"])
+    walls = {side: next(iter(wall)) if isinstance(wall, dict) and wall else str(wall) for side, wall in (config.get("walls") or {}).items()}
+    times = words.scale(shown[0].shots.times, "s")
+    return Look(field, on_grid, dimension, mirrored, size, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units), axes, walls)
+
+
+def chosen(frame: Any, of: str | None) -> tuple[str, bool]:
+    """The field to show, and whether it is the grid's."""
+    here = "position" in frame.particles
+    particles = [name for name in frame.particles if name not in ("position", "id")] if here else []
+    if of is not None:
+        if of in particles or of in frame.grid:
+            return of, of not in particles
+        raise MovieError(f"the snapshots have no field {visible(of)!r}; there are {', '.join(dict.fromkeys([*particles, *frame.grid])) or 'none'}")
+    for names, on_grid in ((particles, False), (list(frame.grid), True)):
+        if names:
+            return next((name for name in FIRST if name in names), names[0]), on_grid
+    return "position", False
+
+
+def valued(frame: Any, field: str, on_grid: bool) -> np.ndarray:
+    """What colours tell; of vectors and tensors their size."""
+    values = np.asarray((frame.grid if on_grid else frame.particles)[field], float)
+    return np.linalg.norm(values, axis=1) if values.ndim > 1 and not on_grid else values
+
+
+def flat(x: np.ndarray, dimension: Any) -> np.ndarray:
+    """Places on the panel, and how near they are: (N, 3)."""
+    x = np.asarray(x, float).reshape(len(x), -1)
+    if x.shape[1] < 3:
+        return np.column_stack([x[:, 0], x[:, 1] if x.shape[1] > 1 else np.zeros(len(x)), np.zeros(len(x))])
+    across, toward = x[:, 0] * np.cos(SIDE) + x[:, 1] * np.sin(SIDE), x[:, 0] * np.sin(SIDE) - x[:, 1] * np.cos(SIDE)
+    return np.column_stack([across, x[:, 2] * np.cos(UP) - toward * np.sin(UP), toward * np.cos(UP) + x[:, 2] * np.sin(UP)])
+
+
+def edges(axes: dict[str, np.ndarray], dimension: Any) -> np.ndarray:
+    """Corners of the grid, as places on the panel."""
+    first, *rest = reversed(axes.values())
+    up = rest[-1] if rest else np.zeros(1)
+    return np.array([[first[0], up[0], 0.0], [first[-1], up[-1], 0.0]])
+
+
+class Stage:
+    """A panel. `show(frame)` draws a snapshot in the place of the one before."""
+
+    def __init__(self, ax: Any, look: Look, label: str):
+        self.ax, self.look, self.named, self.artist, self.lines = ax, look, label, None, None
+        ax.set_aspect("equal" if look.dimension != 1 else "auto")
+        ax.grid(False)
+        ax.set_xlim(*look.length(look.box[:, 0]))
+        ax.set_ylim(*look.length(look.box[:, 1]))
+        if look.dimension in (2, "axisymmetric"):
+            self.walls()
+
+    def label(self, left: bool, foot: bool) -> None:
+        """Names of the axes."""
+        look, letters = self.look, {1: "x ", 2: "xy", "axisymmetric": "rz", 3: "  "}[self.look.dimension]
+        if foot:
+            self.ax.tick_params(labelbottom=True)
+            self.ax.set_xlabel(words.with_units(letters[0].strip() or "seen from the side", look.length.units))
+        if left and letters[1].strip():
+            self.ax.set_ylabel(words.with_units(letters[1], look.length.units))
+
+    def walls(self) -> None:
+        """The outline of the domain; sides that the config names as a wall of their own are thick. `clip_on` keeps what is out of sight out."""
+        look = self.look
+        width, height = look.length(np.array(look.size[:2]))
+        left = -width if look.mirrored else 0.0
+        across, upward = [left, width], [0.0, height]
+        lines = {"left": ([left] * 2, upward), "right": ([width] * 2, upward), "bottom": (across, [0.0] * 2), "top": (across, [height] * 2)}
+        for side, (x, y) in lines.items():
+            named = side in look.walls
+            self.ax.plot(x, y, color=INK if named else QUIET, lw=2.2 if named else 0.7, zorder=4)
+        if look.mirrored:
+            self.ax.axvline(0.0, color=QUIET, lw=0.6, ls=(0, (4, 3)), zorder=4)
+
+    def show(self, frame: Any, lines: bool = False) -> None:
+        """Draw a snapshot; on the grid with `lines` of equal value."""
+        look = self.look
+        if self.artist is not None:
+            self.artist.remove()
+        values = look.scale(valued(frame, look.field, look.on_grid))
+        (self.on_grid if look.on_grid else self.particles)(frame, values, lines)
+        when = f"t = {words.number(float(look.clock(frame.time)))} {look.clock.units}".strip()
+        self.ax.set_title(f"{self.named}, {when}" if self.named else when, fontsize=8.5)
+
+    def particles(self, frame: Any, values: np.ndarray, lines: bool) -> None:
+        """A dot a particle, about as large as its share of the space."""
+        look, place = self.look, flat(frame.particles["position"], self.look.dimension)
+        colours = look.mappable.to_rgba(values)
+        if look.mirrored:
+            place, colours = np.concatenate([place * [-1, 1, 1], place]), np.concatenate([colours, colours])
+        if look.dimension == 3:
+            order = np.argsort(place[:, 2], kind="stable")
+            place, colours = place[order], colours[order]
+            near = (place[:, 2] - place[0, 2]) / max(np.ptp(place[:, 2]), 1e-300)
+            colours[:, :3] *= (0.5 + 0.5 * near)[:, None]
+        self.artist = self.ax.scatter(*look.length(place[:, :2]).T, c=colours, s=self.dot(len(place)), lw=0, zorder=3, rasterized=True)
+
+    def dot(self, count: int) -> float:
+        """Area of a dot in square points, so that particles that fill a third of the panel about touch."""
+        width, height = self.ax.get_position().size * self.ax.figure.get_size_inches() * 72
+        return float(np.clip(0.6 * width * height / max(count, 1), 0.3, 60.0))
+
+    def on_grid(self, frame: Any, values: np.ndarray, lines: bool) -> None:
+        """A field on the grid: in 1-D a line of dots, in 3-D the slice through the middle."""
+        look = self.look
+        axes = list(look.axes.values())
+        if values.ndim == 3:
+            values, axes = values[:, values.shape[1] // 2], [axes[0], axes[2]]
+        across, up = look.length(axes[-1]), look.length(axes[0]) if values.ndim == 2 else None
+        if up is None:
+            self.artist = self.ax.scatter(across, np.zeros(len(across)), c=look.mappable.to_rgba(values), s=60, lw=0)
+            return
+        if look.mirrored:
+            across, values = np.concatenate([-across[:0:-1], across]), np.concatenate([values[:, :0:-1], values], axis=1)
+        self.artist = self.ax.pcolormesh(across, up, values, cmap=look.mappable.cmap, norm=look.mappable.norm, shading="nearest", rasterized=True)
+        finite = values[np.isfinite(values)]
+        if lines and finite.size and np.ptp(finite) > 1e-6 * max(1.0, np.abs(finite).max()):
+            found = self.ax.contour(across, up, values, levels=6, colors="white", linewidths=0.7, linestyles="solid")
+            self.ax.clabel(found, fontsize=7, fmt=words.number)

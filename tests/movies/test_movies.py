@@ -1,0 +1,84 @@
+"""Movies and stills: as many frames as asked, that differ, in every format; the field, the points and the walls that were asked for."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import mpm
+from mpm.movies import MovieError, still
+from mpm.movies.stage import flat
+from mpm.results import UnknownPoint
+from mpm.sweep import engine
+from mpm.sweep.alone import run_in
+
+SHOTS = {"every": 0.1, "particles": ["position", "temperature", "velocity"]}
+
+
+@pytest.fixture
+def run(core, tmp_path):
+    run_in(core.experiment(1, {"bodies.body.velocity": [0.5]}, output={"every": 0.1, "snapshots": SHOTS}), tmp_path / "r", lambda *_: False, print)
+    return tmp_path / "r"
+
+
+@pytest.fixture
+def sweep(tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
+    config = {
+        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
+        "bodies": {"s": body},
+        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
+        "time": {"end": 10},
+        "output": {"every": 1, "snapshots": {"every": 2, "grid": ["temperature"]}},
+        "sweep": {"axes": {"kappa": [1.0, 2.0, 3.0]}},
+    }
+    mpm.sweep(mpm.load(config), out=tmp_path / "s", jobs=0)
+    return tmp_path / "s"
+
+
+@pytest.mark.parametrize("suffix", ["webp", "gif"])
+def test_a_movie_has_the_frames_that_were_asked_for(run, tmp_path, suffix):
+    told = []
+    path = mpm.movie(run, to=tmp_path / f"a.{suffix}", of="velocity", every=2, size=(320, 200), told=lambda *at: told.append(at))
+    with Image.open(path) as image:
+        assert image.size == (320, 200) and image.n_frames == 3
+        seen = []
+        for k in range(3):
+            image.seek(k)
+            seen.append(np.array(image.convert("RGB")))
+    assert told == [(1, 3), (2, 3), (3, 3)] and not np.array_equal(seen[0], seen[2])
+
+
+def test_points_side_by_side_and_what_cannot_be_shown(run, sweep, tmp_path):
+    assert mpm.movie(sweep, "kappa=all", tmp_path / "a.webp").exists()
+    figure = still(sweep, ["kappa=1", "kappa=3"], tmp_path / "a.png", at=[0, 8])
+    assert [ax.get_title() for ax in figure.axes[:4]] == [f"κ = {k} W/m/K, t = {t} s" for k in (1, 3) for t in (0, 8)]
+    with pytest.raises(MovieError, match="there are temperature"):
+        still(run, of="stress")
+    with pytest.raises(MovieError, match=r"\.webp"):
+        mpm.movie(run, to="a.avi")
+    with pytest.raises(UnknownPoint):
+        still(sweep, "kappa=9")
+
+
+def test_snapshots_without_positions_are_no_picture(core, tmp_path):
+    run_in(core.experiment(1, output={"every": 0.5, "snapshots": {"every": 0.5, "particles": ["mass"]}}), tmp_path / "m", lambda *_: False, print)
+    with pytest.raises(MovieError, match="add position"):
+        still(tmp_path / "m")
+    run_in(core.experiment(1, output={"every": 0.5}), tmp_path / "n", lambda *_: False, print)
+    with pytest.raises(UnknownPoint, match="no snapshots"):
+        still(tmp_path / "n")
+
+
+def test_near_particles_are_in_front_and_what_is_above_is_above():
+    places = flat(np.array([[0, 0, 0], [0, 1, 0], [0, 0, 1.0]]), 3)
+    assert places[0, 2] > places[1, 2] and places[2, 1] > places[0, 1]  # the eye stands at negative y, and above
+
+
+@pytest.mark.slow
+def test_mp4(run, tmp_path):
+    av = pytest.importorskip("av", reason="PyAV is not installed")
+    path = mpm.movie(run, to=tmp_path / "a.mp4", size=(321, 200))
+    with av.open(str(path)) as container:
+        frames = list(container.decode(video=0))
+    assert len(frames) == 6 and (frames[0].width, frames[0].height) == (320, 200)
