@@ -76,7 +76,7 @@ def told(error: Exception) -> int:
 
     # named without importing what the command did not need
     places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
-    places += (("mpm.results", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"))
+    places += (("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"))
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))

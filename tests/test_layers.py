@@ -21,7 +21,7 @@ LAYERS = {
     "error": 2, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4,
     "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
-    "study": 6, "plots": 6, "results": 6,
+    "study": 6, "plots": 6, "opened": 6,
     "exports": 7, "movies": 7,
 }  # fmt: skip
 PEERS = {
@@ -32,7 +32,7 @@ PEERS = {
     "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards"}, "observe": {"fields"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
-    "study": {"plots"}, "results": {"plots"},
+    "study": {"plots"}, "opened": {"plots"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables", "mpm.text", "mpm.warned"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat

@@ -5,7 +5,7 @@
     .csv .parquet    tables of a sweep: wide, a row a point; long, a row a number, series too (tables.py; Parquet: pip install 'mpm[parquet]')
     .zarr            the whole dataset for the cloud (pip install 'mpm[zarr]')
 
-May use     results, plots.words                                                        May not  see config, sweep or anything that computes
+May use     opened, plots.words                                                        May not  see config, sweep or anything that computes
 """
 
 import importlib
@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from mpm.results import Results, UnknownPoint
+from mpm.opened import Results, UnknownPoint
 
 KINDS = {".vtkhdf": "vtkhdf", ".usd": "usd", ".usda": "usd", ".usdc": "usd", ".csv": "tables", ".parquet": "tables", ".zarr": "zarr"}
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from mpm.exports import needed, replaced
+from mpm.opened import Results
 from mpm.plots.view import BOOKKEEPING
-from mpm.results import Results
 
 
 def write(found: Results, path: Path, long: bool = False) -> list[Path]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from mpm.exports import ExportError, needed, replaced
 from mpm.exports.space import spatial
-from mpm.results import Point, Results
+from mpm.opened import Point, Results
 
 RATE = 24.0
 

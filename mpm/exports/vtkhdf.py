@@ -11,7 +11,7 @@ import numpy as np
 
 from mpm.exports import replaced
 from mpm.exports.space import spatial
-from mpm.results import Point, Results
+from mpm.opened import Point, Results
 
 PACKED = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 

@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 from mpm.exports import needed, replaced
-from mpm.results import Results
+from mpm.opened import Results
 
 
 def write(found: Results, path: Path) -> list[Path]:

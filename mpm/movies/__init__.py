@@ -6,7 +6,7 @@
 
 Three directions are shown from the side, by depth: near particles cover far ones and are brighter. Beyond some 1e6 particles a program of its own does
 better: `mpm export --to FILE.vtkhdf` and ParaView.
-May use     results, plots                                                              May not  see config, sweep or anything that computes
+May use     opened, plots                                                              May not  see config, sweep or anything that computes
 """
 
 import os
@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.results import Point, Results, UnknownPoint
+from mpm.opened import Point, Results, UnknownPoint
 
 MOVIES, STILLS = (".webp", ".gif", ".mp4"), (".png", ".svg", ".pdf")
 RATE, LONGEST, DPI = 12.0, 8.0, 100  # frames a second, at least; seconds that a movie takes unless told

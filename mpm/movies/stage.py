@@ -9,10 +9,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from mpm.movies import MovieError
+from mpm.opened import Point, Results
 from mpm.plots import words
 from mpm.plots.style import INK, QUIET
 from mpm.records.variables import VARIABLES
-from mpm.results import Point, Results
 from mpm.text import visible
 
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")

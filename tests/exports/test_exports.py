@@ -7,11 +7,11 @@ import numpy as np
 import pandas
 import pytest
 import xarray
-from mpm.results import Results, UnknownPoint
 
 import mpm
 from mpm.exports import ExportError
 from mpm.exports.space import spatial
+from mpm.opened import Results, UnknownPoint
 from mpm.sweep import engine
 from mpm.sweep.alone import run_in
 

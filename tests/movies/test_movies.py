@@ -7,7 +7,7 @@ from PIL import Image
 import mpm
 from mpm.movies import MovieError, still
 from mpm.movies.stage import flat
-from mpm.results import UnknownPoint
+from mpm.opened import UnknownPoint
 from mpm.sweep import engine
 from mpm.sweep.alone import run_in
 
