@@ -13,6 +13,7 @@ from mpm_cli.chart import chart
 from mpm_cli.collect import collect
 from mpm_cli.compare import compare
 from mpm_cli.export import export
+from mpm_cli.fit import fit
 from mpm_cli.info import info
 from mpm_cli.movie import movie
 from mpm_cli.plan import plan
@@ -27,7 +28,7 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, plan, chart, stability, status, collect, compare, verify, plot, movie, export, bench, schema, info, warmup)
+COMMANDS = (run, sweep, fit, plan, chart, stability, status, collect, compare, verify, plot, movie, export, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

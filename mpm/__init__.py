@@ -17,6 +17,7 @@ _PLACES = {
     "Experiment": "mpm.config",
     "run": "mpm.sweep.api",
     "sweep": "mpm.sweep.api",
+    "fit": "mpm.fit.api",
     "particles": "mpm.sweep.ragged",
     "export": "mpm.exports",
     "movie": "mpm.movies",

@@ -103,6 +103,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.clock, once),
     (point.output, once),
     (point.heating, each("materials")),
+    (fitting.fit, once),
     (framing.frame, once),
     (framing.frame_wall, each("walls")),
     (framing.frame_material, each("materials")),

@@ -13,6 +13,7 @@ from mpm.config.bodies import Body
 from mpm.config.boundary import Surface, Wall
 from mpm.config.chart import Chart
 from mpm.config.contacts import Pair
+from mpm.config.fit import Fit
 from mpm.config.laws import Constant
 from mpm.config.loading import Stage
 from mpm.config.loads import Load
@@ -51,6 +52,7 @@ class Experiment(Model):
     sweep: Sweep | None = doc(None, description="what varies")
     chart: Chart | None = doc(None, description="speed against accuracy: methods and resolutions of `mpm chart`")
     stability: Stability | None = doc(None, description="a map of failures, for mpm stability")
+    fit: Fit | None = doc(None, description="what `mpm fit` finds from measured curves")
     parameters: dict[str, Named] = doc({}, description="numbers by name, used as `=name` or in formulas wherever a number stands, swept and fitted by name")
     smoke: dict[str, Any] | None = doc(None, description="path: value, applied by --smoke to make the run coarse and short")
 
@@ -157,7 +159,7 @@ class Experiment(Model):
         for section, name in (("output", "every"), ("method", "offset")):
             if name in self._derived:
                 data[section].pop(name)
-        return {**data, "sweep": None, "smoke": None, "chart": None, "stability": None}
+        return {**data, "sweep": None, "smoke": None, "chart": None, "stability": None, "fit": None}
 
 
 def plain(value: Any, defaults: bool = True) -> Any:

@@ -27,6 +27,7 @@ from mpm.sweep.case_list import Alone, Case, CaseList, Cases, Coordinate, Dimens
 from mpm.sweep.ranges import columns, replaced
 
 MOST_RUNS = 10_000_000  # whatever --max-runs says: planning as many takes ten minutes, and their ids 240 MB
+NOT_OF_A_POINT = ("sweep", "smoke", "chart", "stability", "fit")
 MOST_TOLD = 10  # wrong points told one by one
 
 
@@ -63,7 +64,7 @@ class Points:
         paths = [parameter.path for parameter in variation.parameters()]
         touched = {path[0] for path in paths} | ({"output"} if "time" in {path[0] for path in paths} else set())  # output.every may follow time.end
         kept = [name for name in Experiment.model_fields if name not in touched]
-        self.template = {**experiment.template(), **{name: getattr(experiment, name) for name in kept if name not in ("sweep", "smoke", "chart", "stability")}}
+        self.template = {**experiment.template(), **{name: getattr(experiment, name) for name in kept if name not in NOT_OF_A_POINT}}
         self.known = {name: experiment.key_line(name) for name in kept}
         self.checked = all(unread(parameter.path, parameter.slot) for parameter in variation.parameters())
         self.columns = {id(parameter): column for group in variation.groups for parameter, column in zip(group.parameters, columns(group), strict=True)}

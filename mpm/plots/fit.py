@@ -1,0 +1,99 @@
+"""The figure of `mpm fit`: measured curves with the model and its band, residuals, and the profile of each parameter."""
+
+import json
+from typing import Any
+
+import numpy as np
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from mpm.plots import words
+from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, figure, styled
+
+
+def draw(tree: Any) -> Any:
+    """From fit.nc to a figure."""
+    root, profile, curves = tree.to_dataset(), tree["profile"].to_dataset(), tree["curves"].to_dataset()
+    units = list(dict.fromkeys(str(unit) for unit in root.curve_units.values))
+    parameters = len(root.parameter)
+    columns = max(2, parameters)
+    with styled():
+        rows = len(units)
+        fig = figure(f"Fit: {tree.attrs['title']}", 3.1 * rows + 2.8)
+        grid = fig.add_gridspec(rows + 1, 2 * columns, height_ratios=[1.15] * rows + [1])
+        for row, unit in enumerate(units):
+            model = fig.add_subplot(grid[row, : columns + (columns + 1) // 3])
+            left = fig.add_subplot(grid[row, columns + (columns + 1) // 3 :])
+            panel(model, left, root, curves, unit)
+        for k in range(parameters):
+            ax = fig.add_subplot(grid[rows, k * 2 * columns // parameters : (k + 1) * 2 * columns // parameters])
+            valley(ax, root, profile, k)
+    return fig
+
+
+def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
+    """Curves of one unit, and their residuals."""
+    clock = words.scale(curves.time.values, "s", False)
+    numbers = []
+    for k, name in enumerate(map(str, root.curve.values)):
+        if str(root.curve_units.values[k]) != unit:
+            continue
+        mine = root.curve_of.values == k
+        times, values = root.measured_time.values[mine], root.measured.values[mine]
+        scale = words.scale(root.measured.values, unit, words.is_temperature(str(root["variable"].values[k])))
+        colour, held = OKABE_ITO[k % len(OKABE_ITO)], bool(root.held_out.values[k])
+        said = f"{name}{', held out' if held else ''}: {root.misfit.values[k] * scale.factor:.3g} {scale.units.replace('°C', 'K')} rms"
+        residual = root.residual.values[mine] * scale.factor
+        if np.isnan(times).all():
+            numbers.append(f"{name}: measured {scale(values)[0]:.4g} {scale.units}, model {scale(root.fitted.values[mine])[0]:.4g}")
+            continue
+        ax.plot(clock(times), scale(values), "o", ms=4.5, mfc="white" if held else colour, mec=colour, label=said)
+        ax.set(xlabel=f"time [{clock.units}]", ylabel=f"[{scale.units}]")
+        left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
+        left.set(xlabel=f"time [{clock.units}]", ylabel=f"[{scale.units.replace('°C', 'K')}]")
+        if f"fitted_{name}" in curves:
+            fitted, half = curves[f"fitted_{name}"].values, np.nan_to_num(curves[f"band_{name}"].values)
+            ax.plot(clock(curves.time.values), scale(fitted), color=colour, lw=1.5)
+            ax.fill_between(clock(curves.time.values), scale(fitted - half), scale(fitted + half), color=colour, alpha=0.2, lw=0)
+    left.axhline(0, color=QUIET, lw=0.8)
+    ax.set_title("measured (dots), model with its 95 % band (line)")
+    left.set_title("model less measurement")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(fontsize=SMALL)
+    if numbers:
+        ax.text(0.02, 0.95, "\n".join(numbers), transform=ax.transAxes, va="top", fontsize=SMALL)
+
+
+def valley(ax: Any, root: Any, profile: Any, k: int) -> None:
+    """The profile of a parameter: rise of the sum of squares, 1 at the ends of the interval."""
+    mine = profile.parameter_of.values == k
+    value, rise = profile["value"].values[mine], profile.rise.values[mine]
+    low, high = root.interval.values[k]
+    near = rise <= 4
+    best, error = float(root.best.values[k]), float(root.standard_error.values[k])
+    lowest, highest = root.interval_covariance.values[k]
+    ax.axvspan(low, high, color=FAINT, lw=0, zorder=0)
+    x = np.linspace(max(min(low, lowest), min(value[near])), min(max(high, highest), max(value[near])), 100)
+    half = (highest - lowest) / 2
+    if np.isfinite(half) and half > 0 and half < 20 * (high - low):
+        ax.plot(x, ((x - best) / half) ** 2, "--", color=QUIET, lw=1, label="covariance")
+    side = np.sign(value - best) * np.sqrt(rise)  # nearly straight, so that a parabola runs through the places
+    fine = np.linspace(value.min(), value.max(), 400)
+    ax.plot(fine, np.interp(fine, value, side) ** 2, color=OKABE_ITO[0], label="profile")
+    ax.plot(value, rise, "o", color=OKABE_ITO[0], ms=4)
+    ax.xaxis.set_major_locator(MaxNLocator(4))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: words.number(x)))
+    room = 0.08 * (high - low) or 1.0
+    ax.set_xlim(min(low, x[0]) - room, max(high, x[-1]) + room)
+    ax.axhline(1, color=QUIET, lw=0.8)
+    ax.axvline(best, color=INK, lw=0.8)
+    name, unit = str(root.parameter.values[k]), str(root.parameter_units.values[k])
+    ax.set(xlabel=f"{words.symbol(name) or name}{f' [{words.units_text(unit)}]' if unit not in ('1', '') else ''}", ylim=(0, 2.2))
+    ax.set_title(f"{words.symbol(name) or name} = {words.number(best, 4)} ± {words.number(error, 2)}")
+    if k == 0:
+        ax.set_ylabel("rise of the misfit,\n1: end of the 95 % interval")
+        ax.legend(fontsize=SMALL)
+
+
+def sentences(tree: Any) -> list[str]:
+    """What the fit says."""
+    return json.loads(tree.attrs["sentences"])
