@@ -18,6 +18,7 @@ from mpm_cli.info import info
 from mpm_cli.movie import movie
 from mpm_cli.plan import plan
 from mpm_cli.plot import plot
+from mpm_cli.report import report
 from mpm_cli.run import run
 from mpm_cli.schema import schema
 from mpm_cli.stability import stability
@@ -28,7 +29,7 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, fit, plan, chart, stability, status, collect, compare, verify, plot, movie, export, bench, schema, info, warmup)
+COMMANDS = (run, sweep, fit, plan, chart, stability, status, collect, compare, verify, plot, movie, export, report, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

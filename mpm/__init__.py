@@ -21,6 +21,7 @@ _PLACES = {
     "particles": "mpm.sweep.ragged",
     "export": "mpm.exports",
     "movie": "mpm.movies",
+    "report": "mpm.reports",
     "plan": "mpm.sweep.cases",
     "estimate": "mpm.costs",
     "run_point": "mpm.runner",

@@ -84,6 +84,11 @@ def _open(path: Path) -> Any:
         return tree.load()
 
 
+def drawn(tree: Any, name: str) -> Any:
+    """A figure of a dataset tree by its name, on no file."""
+    return _draw(tree, name)
+
+
 def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) -> Any:
     """A figure by its name."""
     from mpm.plots import layouts, snapshot

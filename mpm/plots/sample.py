@@ -159,8 +159,10 @@ def spearman(one: np.ndarray, two: np.ndarray, group: np.ndarray, seed: int = 0)
     random, names = np.random.default_rng(seed), np.unique(group)
     members = [np.flatnonzero(group == name) for name in names]
     drawn = np.empty(RESAMPLES)
+    alone = np.concatenate(members) if len(names) == len(group) else None  # each point is a group
     for k in range(RESAMPLES):
-        rows = np.concatenate([members[i] for i in random.integers(0, len(names), len(names))])
+        picked = random.integers(0, len(names), len(names))
+        rows = alone[picked] if alone is not None else np.concatenate([members[i] for i in picked])
         drawn[k] = correlation(one[rows], two[rows])
     low, high = np.percentile(drawn, [2.5, 97.5])
     return correlation(one, two), float(low), float(high)

@@ -1,0 +1,186 @@
+"""Reports: everything escaped, self-contained, small; in a real browser (skipped where there is none) no error, no request, and controls that work."""
+
+import html.parser
+import importlib.util
+import os
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+import mpm
+from mpm.sweep import engine
+
+HERE = Path(__file__).parent
+spec = importlib.util.spec_from_file_location("browser", HERE / "browser.py")
+browsers = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(browsers)
+HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">'\"&{{7*7}}"
+
+
+def sweep(folder, monkeypatch, title="A slab", kappas=(1.0, 2.0, 3.0), **sections):
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
+    config = {
+        "title": title,
+        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
+        "bodies": {"s": body},
+        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
+        "time": {"end": 10},
+        "output": {"every": 1, "probes": {"centre": [0.01]}, "observables": ["temperature.mean", "time_to.centre.95_degC"]},
+        "sweep": {"axes": {"kappa": list(kappas)}},
+    } | sections
+    mpm.sweep(mpm.load(config), out=folder, jobs=0)
+    return folder
+
+
+SAMPLE = {"sobol": {"count": 64, "seed": 1, "ranges": {"kappa": [1, 9], "alpha": [500, 2000]}}}
+
+
+def failed(folder, monkeypatch):
+    return sweep(folder, monkeypatch, kappas=(13.0, 17.0))
+
+
+def partly(folder, monkeypatch):
+    return sweep(folder, monkeypatch, kappas=(1.0, 10.0, 13.0, 17.0))
+
+
+def sample(folder, monkeypatch):
+    return sweep(folder, monkeypatch, sweep={"sample": SAMPLE})
+
+
+def plane(folder, monkeypatch):
+    return sweep(folder, monkeypatch, sweep={"axes": {"kappa": [1, 2, 3, 4], "alpha": [500, 1000, 2000]}})
+
+
+def hostile(folder, monkeypatch):
+    """Script in the title, in the text of an error and of a warning, in the name of what failed."""
+    import fake_runner
+
+    monkeypatch.setattr(fake_runner, "WARNINGS", [f"volume: {HOSTILE}; {HOSTILE}"])
+    before = fake_runner.run_point
+
+    def run_point(experiment, beat=None, keeper=None):
+        if experiment.materials["m"].heat.kappa.value == 3:
+            raise ValueError(HOSTILE)
+        return before(experiment, beat, keeper)
+
+    monkeypatch.setattr(fake_runner, "run_point", run_point)
+    return sweep(folder, monkeypatch, title=HOSTILE, kappas=(1.0, 3.0, 10.0))
+
+
+def thousand(folder, monkeypatch):
+    return sweep(folder, monkeypatch, sweep={"sample": {"sobol": {**SAMPLE["sobol"], "count": 1000}}})
+
+
+SWEEPS = {"failed": failed, "partly": partly, "sample": sample, "plane": plane, "hostile": hostile, "thousand": thousand}
+
+
+class Tags(html.parser.HTMLParser):
+    """Tags and attributes of a page, and what text it shows."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.attributes, self.text = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += [(tag, *pair) for pair in attrs]
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+@pytest.mark.parametrize("name", ["failed", "partly", "plane", "hostile"])
+def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch):
+    path = mpm.report(SWEEPS[name](tmp_path / "s", monkeypatch))
+    page = path.read_text(encoding="utf-8")
+    tags = Tags(page)
+    assert path.name == "report.html" and tags.tags.count("script") == 2 and tags.tags.count("style") == 1
+    for tag, attribute, value in tags.attributes:
+        assert not attribute.startswith("on") and attribute != "style", (tag, attribute)
+        if attribute in ("src", "href"):
+            assert value.startswith(("data:", "#")), value[:80]
+    assert "{{" not in re.sub(r"\{\{7\*7\}\}", "", page) and "49" not in "".join(tags.text)[:200]
+    policy = next(value for tag, attribute, value in tags.attributes if attribute == "content" and "default-src" in value)
+    assert policy.startswith("default-src 'none'") and "unsafe" not in policy
+    assert all(value for tag, attribute, value in tags.attributes if tag == "img" and attribute == "alt")
+    shown = "".join(tags.text)
+    assert "built-in method" not in page
+    if name == "plane":
+        assert "1, 2, 3, 4 W/m/K" in shown and "materials.m.heat.fourier.kappa" in shown
+    if name == "hostile":
+        assert shown.count("document.title='owned'") >= 3  # as text: title, error, warning
+    if name == "failed":
+        assert "no such luck" in shown and "det F <= 0" in shown
+
+
+def test_a_thousand_points_are_small_and_quick(tmp_path, monkeypatch):
+    folder = thousand(tmp_path / "s", monkeypatch)
+    began = time.monotonic()
+    path = mpm.report(folder)
+    print(f"report of 1 000 points: {time.monotonic() - began:.1f} s, {path.stat().st_size / 1e6:.2f} MB")
+    assert path.stat().st_size < 3e6
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    if browsers.FOUND is None:
+        pytest.skip("no Chromium is installed here; apt-get install chromium-headless-shell, as CI does")
+    made = browsers.Browser(tmp_path_factory.mktemp("browser"))
+    yield made
+    made.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SWEEPS)
+def test_in_a_browser(name, browser, tmp_path, monkeypatch):
+    path = mpm.report(SWEEPS[name](tmp_path / "s", monkeypatch))
+    for dark in (False, True):
+        browser.open(path, dark=dark)
+        assert not browser.errors, browser.errors
+        assert [url for url in browser.requests if not url.startswith("data:")] == [path.resolve().as_uri()]
+        assert browser.value("[...document.images].length >= 1 && [...document.images].every(image => image.complete && image.naturalWidth > 100)")
+        assert browser.value("document.title") != "owned" and contrast(browser) >= 4.5
+    if name != "failed":
+        ok = browser.value("document.querySelectorAll('#chart .mark').length")
+        assert ok >= {"partly": 2, "sample": 64, "plane": 12, "hostile": 2, "thousand": 1000}[name]
+        before = browser.value("document.getElementById('chart').innerHTML")
+        browser.value("const s = document.getElementById('up'); s.value = s.options[0].value; s.dispatchEvent(new Event('change'))")
+        assert browser.value("document.getElementById('chart').innerHTML") != before
+        browser.value("document.getElementById('chart').focus()")
+        browser.ask("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight", code="ArrowRight")
+        assert ": " in browser.value("document.getElementById('told').textContent")
+        brush(browser)
+        assert re.fullmatch(r"\d+ of \d+ points kept", browser.value("document.getElementById('kept').textContent"))
+        browser.value("document.getElementById('clear').click()")
+        assert browser.value("document.getElementById('kept').textContent") == ""
+    assert not browser.errors, browser.errors
+    if target := os.environ.get("SCREENSHOTS"):
+        browser.screenshot(Path(target) / f"report_{name}.png")
+
+
+def contrast(browser):
+    """The least contrast of the palette's texts on the page (WCAG)."""
+    return browser.value("""(() => {
+      const style = getComputedStyle(document.documentElement), paper = style.getPropertyValue("--paper");
+      const light = text => { const n = parseInt(text.trim().slice(1), 16);
+        return [n >> 16, (n >> 8) & 255, n & 255].map(v => v / 255).map(v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+          .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0); };
+      const ratio = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      return Math.min(...["--ink", "--quiet", "--accent", "--bad", "--good"].flatMap(name =>
+        [paper, style.getPropertyValue("--shade")].map(back => ratio(light(style.getPropertyValue(name)), light(back)))));
+    })()""")
+
+
+def brush(browser):
+    """Drag along the first axis of the parallel coordinates."""
+    browser.value("document.querySelector('#parallel .handle').scrollIntoView({block: 'center'})")
+    box = browser.value("(() => { const b = document.querySelector('#parallel .handle').getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()")
+    x = box[0] + box[2] / 2
+    browser.mouse("mousePressed", x, box[1] + 0.2 * box[3])
+    for part in (0.3, 0.5, 0.6):
+        browser.mouse("mouseMoved", x, box[1] + part * box[3])
+    browser.mouse("mouseReleased", x, box[1] + 0.6 * box[3])
