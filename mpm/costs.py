@@ -8,9 +8,10 @@ Fails when: a scene stiffens or speeds up, so that its steps are not those of it
 
 import math
 
-from mpm.config.rules_size import MOST_UNKNOWNS
+from mpm.config.rules_size import MOST_STEPS, MOST_UNKNOWNS
 from mpm.records.frames import SPILL
 from mpm.scene.inventory import output_bytes, physics, ticks
+from mpm.scene.refusal import SceneError, placed
 
 # Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
 LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
@@ -30,6 +31,7 @@ LOOKED = 50_000  # particles of a scene that are all made to see its limits
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
+@placed
 def estimate(experiment) -> dict:
     """particles (of many, three digits), unknowns, steps, seconds, memory_bytes, output_bytes, limits {name: seconds}, binds, physics of one point."""
     if experiment.grid.dimension == 0:
@@ -37,6 +39,13 @@ def estimate(experiment) -> dict:
 
         return point.estimate(experiment)
     return estimate_moving(experiment) if experiment.moving else estimate_rigid(experiment)
+
+
+def refuse_endless(experiment, step: float) -> None:
+    """SceneError where explicit steps of this length [s] would not come to the end in months."""
+    if experiment.method.mechanics == "explicit" and experiment.time.end / step > MOST_STEPS:
+        said = f"the run would take {experiment.time.end / step:.3g} steps of {step:.3g} s, and no more than {MOST_STEPS:.0e} end within months"
+        raise SceneError(("time", "end"), f"{said}: at most {MOST_STEPS * step:.3g} s, larger cells or softer materials")
 
 
 def memory(experiment) -> int:
@@ -159,6 +168,7 @@ def estimate_moving(experiment) -> dict:
     particles = sum(len(body.particles.m) for body in scene.bodies) if particles <= LOOKED else int(float(f"{particles:.3g}"))
     S = experiment.time.scale
     step = (scene.step or now.step() * scene.safety) * S
+    refuse_endless(experiment, step)
     pace = min((scene.heat_step or now.pace) * S, experiment.time.end)
     binds = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
     steps = math.ceil(experiment.time.end / min(step, pace))
@@ -180,7 +190,6 @@ def estimate_moving(experiment) -> dict:
 def estimate_rigid(experiment) -> dict:
     """The bodies' equations are set up (milliseconds), not solved. Implicit steps have no limit of stability, so accuracy binds."""
     from mpm.rigid import Method, outlook
-    from mpm.scene.build import SceneError
     from mpm.scene.rigid import rigid_bodies
     from mpm.scene.shapes import shape
     from mpm.scene.still import joints
@@ -190,7 +199,8 @@ def estimate_rigid(experiment) -> dict:
         lower, upper = shape(body.shape, grid.dimension).bounds()
         unknowns += math.prod(math.ceil(float(extent) / grid.cell) + 2 for extent in upper - lower)
     if unknowns > MOST_UNKNOWNS:
-        raise SceneError(f"{unknowns} unknowns in rigid bodies, more than {MOST_UNKNOWNS}: take a coarser grid.cell (the method is of order 2 to 3)")
+        said = f"{unknowns} unknowns in rigid bodies, more than {MOST_UNKNOWNS}: take a coarser grid.cell (the method is of order 2 to 3)"
+        raise SceneError(("grid", "cell"), said)
     bodies, method = rigid_bodies(experiment), Method(type(experiment.method.rigid).kind)
     ahead = outlook(bodies, grid.dimension, grid.cell, end=experiment.time.end, method=method, joints=joints(experiment))
     return {

@@ -1,7 +1,7 @@
 """Review: what of a run's records a careful user wants to know, as warnings (mpm.warned). What only a running scene can see is warned of by mpm.guards.
 
 volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion at the temperatures reached explains; not where loads press
-heat      heat content and heat taken in disagree by more than HEAT of the larger
+heat      heat content and heat taken in disagree by more than HEAT of the larger, or of what the spread of temperatures holds
 energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads
 thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from mpm.materials import value
 from mpm.records.variables import describe
 from mpm.scene.build import elastic_law, stress_temperature_modulus
+from mpm.scene.law import law
 from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
@@ -65,10 +67,17 @@ def joules(experiment: Any) -> str:
     return describe("energy_total", experiment.grid.dimension).units
 
 
+def within(experiment: Any, run: Run) -> float:
+    """The heat that evens out between warm and cold at the start [J]: the scale of a scene that exchanges none, whose ledger is round-off."""
+    least, most = float(run.series["temperature_min"][0]), float(run.series["temperature_max"][0])
+    alphas = [value(law(material.heat.alpha), least) for material in experiment.materials.values() if material.heat is not None]
+    return float(run.series["mass_total"][0]) * max(alphas) * (most - least) if alphas and "mass_total" in run.series else 0.0
+
+
 def heat(experiment: Any, run: Run) -> Iterator[str]:
     if "heat_ledger" not in run.series:
         return
-    most = max(np.abs(run.series[name]).max() for name in ("heat_total", "heat_exchanged"))
+    most = max(within(experiment, run), *(np.abs(run.series[name]).max() for name in ("heat_total", "heat_exchanged")))
     off = np.abs(run.series["heat_ledger"]).max()
     if off > HEAT * most > 0:
         yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {100 * off / most:.2g} % of the larger"

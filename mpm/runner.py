@@ -15,14 +15,14 @@ import sys
 import numpy as np
 
 from mpm import compiling
-from mpm.costs import estimate
+from mpm.costs import estimate, refuse_endless
 from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
 from mpm.records.provenance import cores
 from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.inventory import physics
-from mpm.scene.refusal import SceneError
+from mpm.scene.refusal import SceneError, placed
 from mpm.state import Run
 
 WORTH_A_PROCESS = 5.0  # s of compiling from which another process, which starts in 1 to 2 s, saves time
@@ -35,6 +35,7 @@ compile_heat(restore(json.load(sys.stdin)))
 """
 
 
+@placed
 def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
     """Run one point (no sweep). A failure of the model is the Run's outcome; SceneError says that no method here can run the config.
 
@@ -66,9 +67,11 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
     elif experiment.moving:
         from mpm.scene.build import build
         from mpm.scene.scaling import physical, shown
-        from mpm.simulation import simulate
+        from mpm.simulation import Clock, simulate
+        from mpm.total.drive import present_limits
 
         scene = build(experiment, exact)
+        refuse_endless(experiment, (scene.step or present_limits(scene, Clock(scene)).step() * scene.safety) * scene.scale)
         scene.watch.exact = scene.watch.exact if compare else None
         scene.threads, scene.watch.shown = threads, shown(experiment)
         run = physical(simulate(scene, beat, keeper), experiment)
@@ -127,7 +130,7 @@ def complete(experiment, run: Run) -> Run:
         wanted += [(f"snapshots.{kind}.{name}", name in stems) for name in getattr(shots, kind)]
     lacking = [name for name, there in wanted if not there]
     if run.outcome.ok and lacking:
-        raise SceneError(f"output.{', output.'.join(lacking)}: asked for, and this model does not tell {'it' if len(lacking) == 1 else 'them'}")
+        raise SceneError(("output",), f"{', '.join(lacking)}: asked for, and this model does not tell {'it' if len(lacking) == 1 else 'them'}")
     return run
 
 

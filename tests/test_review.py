@@ -1,5 +1,7 @@
 """Every kind of warning that a run's records give rise to: a scene that must raise it, and a sibling that must not."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,14 @@ def test_heat_that_the_ledger_misses(core):
     experiment = core.experiment(1, {"outside": core.COLD})
     assert planted(core, experiment, lambda body: body.thermal.theta.__isub__(1.0)) == ("heat",)
     assert planted(core, experiment, lambda body: None) == ()
+
+
+@pytest.mark.parametrize(("off", "told"), [(1e-13, False), (0.5, True)])
+def test_round_off_of_a_scene_that_takes_in_no_heat_is_no_gap(off, told):
+    """Two bodies that only pass heat to each other: the ledger is measured by what evens out, not by the nothing that is exchanged."""
+    series = {"temperature_min": [300.0], "temperature_max": [310.0], "mass_total": [2.0], "heat_total": [off], "heat_exchanged": [0.0], "heat_ledger": [off]}
+    run = SimpleNamespace(series={name: np.array(values) for name, values in series.items()})
+    assert bool(list(LOOKS["heat"](scene(0.0, 4.0), run))) is told  # 1 % of 2 kg times 1.5 J/(kg K) times 10 K
 
 
 def test_a_probe_whose_particle_is_gone(core):

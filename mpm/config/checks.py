@@ -69,6 +69,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.grid, once),
     (size.count, once),
     (size.steps, once),
+    (size.whole, once),
     (scene.body, each("bodies")),
     (scene.body_shape, each("bodies")),
     (scene.body_motion, each("bodies")),

@@ -82,7 +82,7 @@ class Experiment(Model):
 
     def _placed(self, like: "Experiment") -> "Experiment":
         """Read from where another was."""
-        self._source, self._path = like._source, like._path
+        self._source, self._path, self._tree = like._source, like._path, like._tree
         return self
 
     @property

@@ -10,6 +10,7 @@ from mpm.config.shapes_fit import bounds, misfits
 
 MOST_UNKNOWNS = 2_000_000  # nodes of rigid bodies, whose matrices are factorised
 MOST_PARTICLES = 10**9  # 200 to 800 bytes each
+ON_LINE = 1e-6  # cells
 MOST_STEPS = 10**12  # months at a microsecond each
 
 
@@ -40,6 +41,19 @@ def count(experiment: Any) -> Iterator[Finding]:
         enough = cell * (found / most) ** (1 / directions)
         said = f"there would be about {found:.3g} {what}, and at most {most:_} are possible".replace("_", " ")
         yield Finding(("grid", "cell"), said, f"above {enough:.2g} [m]", given=cell)
+
+
+def whole(experiment: Any) -> Iterator[Finding]:
+    """Walls stand on grid lines, where bodies move: so does every side of the domain."""
+    cell = experiment.grid.cell
+    if cell is None or not experiment.grid.size or cells(experiment.grid) > MOST_CELLS or not moves(experiment):
+        return
+    for index, length in enumerate(experiment.grid.size):
+        n = round(length / cell)
+        if n and abs(n * cell - length) > ON_LINE * cell:
+            near_by = " or ".join(f"{k * cell:.6g} [m]" for k in (math.floor(length / cell), math.ceil(length / cell)) if k)
+            said = f"{length:g} m is no whole number of cells of {cell:g} m, and walls stand on grid lines"
+            yield Finding(("grid", "size", index), said, f"{near_by}, or a grid.cell of {length / n:.6g} [m]")
 
 
 def steps(experiment: Any) -> Iterator[Finding]:

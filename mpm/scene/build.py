@@ -68,25 +68,26 @@ def grid_space(experiment):
     count = [round(size / grid.cell) for size in grid.size]
     for size, n in zip(grid.size, count, strict=True):
         if abs(n * grid.cell - size) > 1e-6 * grid.cell:
-            raise SceneError(f"grid.size {size:g} m is no whole number of cells of {grid.cell:g} m: walls stand on grid lines; change grid.cell or grid.size")
+            raise SceneError(("grid", "size"), f"{size:g} m is no whole number of cells of {grid.cell:g} m: walls stand on grid lines")
     nodes = [n + 1 + 2 * PAD for n in count]
     kind = {1: Line, 2: Plane, "axisymmetric": Axisymmetric, 3: Volume}[grid.dimension]
     return kind(grid.cell, *nodes, BASES[grid.basis]())
 
 
-def sample(experiment, body, most: float = math.inf):
+def sample(experiment, name: str, most: float = math.inf):
     """Cut cells of a body in the grid's coordinates, larger where they would be more than `most`; their edges; the outline (mpm.scene.outline)."""
     grid, method = experiment.grid, experiment.method
-    outline = shape(body.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
+    outline = shape(experiment.bodies[name].shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
     if grid.dimension == "axisymmetric":
         if method.offset[0] != 0:
-            raise SceneError("method.offset shifts an axisymmetric body that moves off its axis: only its second number may differ from 0")
+            raise SceneError(("method", "offset"), "it shifts an axisymmetric body that moves off its axis: only its second number may differ from 0")
         lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
     edge = grid.cell / method.particles
     for low, high, size in zip(lower, upper, grid.size, strict=True):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
-            raise SceneError(f"a body reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
+            said = f"{name} reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size"
+            raise SceneError(("bodies", name, "shape"), said)
     edge *= max(1, math.ceil((math.prod((upper - lower) / edge) / most) ** (1 / len(lower))))
     edges = [np.arange(math.floor(low / edge + 1e-9), math.ceil(high / edge - 1e-9) + 1) * edge for low, high in zip(lower, upper, strict=True)]
     radial = grid.dimension == "axisymmetric"
@@ -129,7 +130,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut, edges, outline = sample(experiment, config, most)
+    cut, edges, outline = sample(experiment, name, most)
     faces, cut = cut, cornered(cut, experiment.grid.cell) if meets else cut
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
@@ -206,7 +207,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
     names = tuple(experiment.bodies)
     rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
     if rigid:
-        raise SceneError(f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
+        raise SceneError(("bodies", rigid[0]), f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
     scale, experiment = experiment.time.scale, hurried(experiment)
     space = grid_space(experiment)
     zero = next(iter(experiment.bodies.values())).temperature

@@ -49,7 +49,7 @@ def hot_walls(experiment, sides) -> list[HotWall]:
 def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:
     """SceneError where the exchange depends on a surface temperature that kappa = 0 leaves behind (config/rules_scene.py tells it of a single point)."""
     if exchanges and not conducts:
-        raise SceneError(f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
+        raise SceneError(("surfaces",), f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
 
 
 def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, meets: bool = False):
@@ -68,7 +68,7 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
     acts = [Act(np.searchsorted(kept, act.pieces), act.beta, act.outside, act.flux, act.emissivity, act.sky) for act in acts]
     radiating = [act for act in acts if act.emissivity > 0]
     if len(np.unique(np.concatenate([act.pieces for act in radiating] or [kept[:0]]))) < sum(len(act.pieces) for act in radiating):
-        raise SceneError(f"two surface entries of {name} radiate from the same place: merge them into one")
+        raise SceneError(("surfaces",), f"two surface entries of {name} radiate from the same place: merge them into one")
     around = [act.outside for act in acts if act.beta > 0] + [wall.temperature for wall in walls]
     seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
     most = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell

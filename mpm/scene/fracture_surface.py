@@ -25,7 +25,7 @@ def surface_and_seams(experiment, name: str, cut, edges, zero: float, sides, the
 def refuse_idle(experiment, seams) -> None:
     """SceneError where surfaces are to open and none exchanges heat."""
     if experiment.method.fracture == "surface" and not any(seams):
-        raise SceneError("method.fracture: surface opens faces that exchange heat, and nothing acts on the surface of a body: name it in `surfaces`")
+        raise SceneError(("method", "fracture"), "surface opens faces that exchange heat, and nothing acts on the surface of a body: name it in `surfaces`")
 
 
 def with_seams(cut, edges, radial: bool):

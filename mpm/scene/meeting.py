@@ -88,19 +88,23 @@ def refuse_methods(experiment, meets: Meets) -> None:
     for b, c in np.argwhere(meets.pairs >= 0):
         both = f"{names[b]} and {names[c]} can meet"
         if type(method.transfer).kind == "xpic":
-            raise SceneError(f"method.transfer: xpic does not know bodies that meet, and {both}: take apic, flip or affine_flip, or weld them under `contacts`")
+            said = f"xpic does not know bodies that meet, and {both}: take apic, flip or affine_flip, or weld them under `contacts`"
+            raise SceneError(("method", "transfer"), said)
         if method.locking is not None:
-            raise SceneError(f"method.locking averages over one body only, and {both}: leave it out, or weld them under `contacts`")
-        if any(one.heating is not None and one.heating.elastic is not None and one.heating.elastic.form == "grid" for one in (materials[b], materials[c])):
-            raise SceneError(f"heating.elastic.form: grid does not know bodies that meet, and {both}: take `particles`, or weld them under `contacts`")
+            raise SceneError(("method", "locking"), f"it averages over one body only, and {both}: leave it out, or weld them under `contacts`")
+        for of, one in ((b, materials[b]), (c, materials[c])):
+            if one.heating is not None and one.heating.elastic is not None and one.heating.elastic.form == "grid":
+                said = f"grid does not know bodies that meet, and {both}: take `particles`, or weld them under `contacts`"
+                raise SceneError(("materials", experiment.bodies[names[of]].material, "heating", "elastic", "form"), said)
     for b, c in np.argwhere(meets.links > 0):
         both = f"{names[b]} and {names[c]} can pass heat where they touch"
         cure = f"or set `conductance: 0` for the pair: contacts: [{{between: [{names[b]}, {names[c]}], conductance: 0}}]"
         if type(method.heat).kind in ("explicit", "stabilised"):
-            raise SceneError(f"method.heat: {both}, which takes implicit steps: auto or implicit, {cure}")
-        for one in (materials[b], materials[c]):
+            raise SceneError(("method", "heat"), f"{both}, which takes implicit steps: auto or implicit, {cure}")
+        for of, one in ((b, materials[b]), (c, materials[c])):
             if type(one.heat.alpha).kind != "constant":
-                raise SceneError(f"heat.alpha: {both}, which is known for constant alpha only: a number, {cure}")
+                at = ("materials", experiment.bodies[names[of]].material, "heat", "fourier", "alpha")
+                raise SceneError(at, f"{both}, which is known for constant alpha only: a number, {cure}")
 
 
 def refuse_apart(experiment, outlines) -> None:
@@ -114,7 +118,8 @@ def refuse_apart(experiment, outlines) -> None:
         edges = [np.linspace(p, q, max(2, int((q - p) / (0.25 * h)))) for p, q in zip(low, high, strict=True)]
         gap = float(np.min(np.abs(b.distance(cut_quadrature(a, edges, 2)[1].x))))
         if gap > OVERLAP * h:
-            raise SceneError(f"contacts[{index}]: {' and '.join(pair.between)} are to be welded and lie {gap / h:.2g} cells apart: let them touch at the start")
+            said = f"{' and '.join(pair.between)} are to be welded and lie {gap / h:.2g} cells apart: let them touch at the start"
+            raise SceneError(("contacts", index), said)
 
 
 def friction(pair) -> float:
@@ -162,8 +167,9 @@ def refuse_overlap(experiment, names, outlines, boxes) -> None:
             depth = np.minimum(-outlines[b].distance(points), -outlines[c].distance(points))
             if depth.max() > 0.5 * OVERLAP * h:
                 place = ", ".join(f"{1e3 * x:.4g}" for x in points[int(np.argmax(depth))])
-                raise SceneError(f"bodies {names[c]} and {names[b]} overlap at the start by {2 * depth.max() / h:.2g} cells near ({place}) mm: there would be "
-                                 "mass twice; move one of them")  # fmt: skip
+                by = f"{2 * depth.max() / h:.2g} cells near ({place}) mm"
+                said = f"bodies {names[c]} and {names[b]} overlap at the start by {by}: there would be mass twice; move one of them"
+                raise SceneError(("bodies", names[b], "shape"), said)
 
 
 def meeting(meets: Meets, space, bodies, surroundings) -> Meeting:

@@ -28,10 +28,13 @@ EXCHANGE = {
 LOAD = ("traction", "drag")
 
 
+SECTION = {"exchange": "surfaces", "programme": "surfaces", "load": "loads", "law": "materials"}  # of the config, by family
+
+
 def known(table: Any, kind: str, family: str) -> Any:
     """What a table has for a kind."""
     if kind not in table:
-        raise SceneError(f"{family} {kind!r} is not known here; what is: {', '.join(table)}")
+        raise SceneError((SECTION[family],), f"{family} {kind!r} is not known here; what is: {', '.join(table)}")
     return table[kind]
 
 

@@ -175,7 +175,7 @@ def lumped(experiment, name: str, body):
         return NoExchange()
     total = sum(beta for beta, _ in pairs)
     if math.isinf(total) and len(pairs) > 1:
-        raise SceneError("a fixed temperature, or beta = inf, must be the only exchange of a material point")
+        raise SceneError(("surfaces",), "a fixed temperature, or beta = inf, must be the only exchange of a material point")
     outside = pairs[0][1] if len(pairs) == 1 else sum(beta * out for beta, out in pairs) / total
     return Lumped(total * body.shape.surface_to_volume, outside)
 

@@ -21,16 +21,17 @@ def rigid_bodies(experiment, field=None) -> list:
     """The bodies of a rigid scene, with the temperatures `field(x)` at the start where given; SceneError for one that has nothing to do."""
     from mpm.rigid import RigidBody
     if experiment.grid.basis != "quadratic":
-        raise SceneError(f"grid.basis {experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out")
+        said = f"{experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out"
+        raise SceneError(("grid", "basis"), said)
     if experiment.method.locking is not None:
-        raise SceneError("method.locking is for bodies that move, and none of these has `elastic`; leave it out")
+        raise SceneError(("method", "locking"), "it is for bodies that move, and none of these has `elastic`; leave it out")
     if type(experiment.method.bounds).kind != "auto":
-        raise SceneError("method.bounds is for bodies that move, and none of these has `elastic`; method.rigid: bounded keeps bounds here")
+        raise SceneError(("method", "bounds"), "it is for bodies that move, and none of these has `elastic`; method.rigid: bounded keeps bounds here")
     bodies = []
     for name, body in experiment.bodies.items():
         material = experiment.materials[body.material]
         if material.heat is None:
-            raise SceneError(f"materials.{body.material} has neither `elastic` nor `heat`: nothing would happen in {name}")
+            raise SceneError(("materials", body.material), f"it has neither `elastic` nor `heat`: nothing would happen in {name}")
         entries = [entry for entry in experiment.surfaces if entry.of == name]
         surfaces = tuple((entry.side, beta, outside) for entry in entries for beta, outside in robin(entry))
         fluxes = tuple((entry.side, part.rate) for entry in entries for part in acting(entry, "flux"))
@@ -62,7 +63,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     bodies, end, probes, together = rigid_bodies(experiment, field), experiment.time.end, experiment.output.probes, joints(experiment)
     refuse_covered(experiment, [body.shape for body in bodies], together)
     if field is not None and together:
-        raise SceneError("exact: it sets the temperatures at the start, which is not known of bodies that touch")
+        raise SceneError(("exact",), "it sets the temperatures at the start, which is not known of bodies that touch")
     shots = look.times, look.points
     solved = solve(bodies, grid.dimension, grid.cell, -shift, end, times, probes, levels, method, beat, snapshots=shots, keeper=keeper, joints=together)
     series = {dataset_name(name): values for name, values in solved.series.items()}

@@ -27,7 +27,8 @@ def joints(experiment) -> tuple:
         if touch(one, two, h):
             found.append(Joint(a, b, math.inf if given is None else given))
         elif index is not None:
-            raise SceneError(f"contacts[{index}]: {names[a]} and {names[b]} do not touch, so no heat can pass: let faces of theirs meet, or leave the pair out")
+            said = f"{names[a]} and {names[b]} do not touch, so no heat can pass: let faces of theirs meet, or leave the pair out"
+            raise SceneError(("contacts", index), said)
     refuse(experiment, names, [joint for joint in found if joint.conductance > 0])
     return tuple(found)
 
@@ -39,11 +40,11 @@ def refuse(experiment, names, conducting) -> None:
         both = f"{names[joint.first]} and {names[joint.second]} touch and pass heat"
         cure = f"contacts: [{{between: [{names[joint.first]}, {names[joint.second]}], conductance: 0}}]"
         if kind in ("explicit", "bounded"):
-            raise SceneError(f"method.rigid: {both}, which takes implicit steps: auto or implicit, not {kind}; or keep them apart by {cure}")
+            raise SceneError(("method", "rigid"), f"{both}, which takes implicit steps: auto or implicit, not {kind}; or keep them apart by {cure}")
         for material in (experiment.bodies[names[b]].material for b in (joint.first, joint.second)):
             kappa = experiment.materials[material].heat.kappa
             if type(kappa).kind == "constant" and kappa.value == 0:
-                raise SceneError(f"materials.{material}.heat: {both}, and kappa is 0: give it a conductivity; or keep them apart by {cure}")
+                raise SceneError(("materials", material, "heat"), f"{both}, and kappa is 0: give it a conductivity; or keep them apart by {cure}")
 
 
 def refuse_covered(experiment, outlines, found) -> None:
@@ -61,4 +62,4 @@ def refuse_covered(experiment, outlines, found) -> None:
         bare = ~covered(x, normal, others, h)
         for index, entry in entries:
             if not np.any(bare & on_side(normal, entry.side)):
-                raise SceneError(f"surfaces[{index}]: other bodies cover side {entry.side!r} of {name}, and nothing is exchanged there: leave the entry out")
+                raise SceneError(("surfaces", index), f"other bodies cover side {entry.side!r} of {name}, and nothing is exchanged there: leave the entry out")

@@ -16,6 +16,7 @@ from mpm.scene.menus import pulling
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
+from mpm.scene.traction import one_ramp
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Particles, Surface, Thermal
 from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, new_nodes
@@ -51,7 +52,8 @@ def total_body(experiment, name: str, zero: float, space):
         lower = np.maximum(lower, [0.0, -np.inf])  # a ball on the axis: the other half is the same material
     for low, high, size in zip(lower, upper, grid.size, strict=True):
         if low < -1e-9 * size or high > size * (1 + 1e-9):
-            raise SceneError(f"{name} reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size")
+            said = f"{name} reaches from {low:g} m to {high:g} m, outside the domain of {size:g} m: move it, or enlarge grid.size"
+            raise SceneError(("bodies", name, "shape"), said)
     x, V, surface = points(outline, knots(lower, upper, grid.cell, grid.basis), method.particles, radial)
     order = np.lexsort(np.floor(x / grid.cell + 0.5 + 1e-9).T[::-1])  # points that share nodes follow one another
     x, V = x[order], V[order]
@@ -144,6 +146,7 @@ def bonded(experiment, name: str, surface, lower, upper) -> np.ndarray:
         near = facing & (gap > FLUSH * size) & (gap < NEAR * grid.cell)
         if bound[axis, end] != CONTACT and near.any():
             raise SceneError(
+                ("bodies", name, "shape"),
                 f"{name} lies on the {side} wall, and a part of it is {gap[near].min():.3g} m away from that wall: nearer than {NEAR:g} cells, it would be "
                 "held as if it lay on it too; smaller cells, or method.frame: updated"
             )
@@ -190,14 +193,12 @@ def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> 
     tractions, drag = pulling(entries)
     if not tractions:
         return np.zeros((0, D)), 0.0, drag
-    ramps = {entry.traction.ramp for entry in tractions}
-    if len(ramps) > 1:
-        raise SceneError(f"the tractions on {name} have ramps of {', '.join(f'{ramp:g} s' for ramp in sorted(ramps))}: give them the same")
+    ramps = one_ramp(experiment, name, tractions)
     x, force = [], []
     for entry in tractions:
         pieces = on_side(surface.normal, entry.side)
         if not pieces.any():
-            raise SceneError(f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
+            raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
         x.append(surface.x[pieces])
         force.append(surface.w[pieces, None] * np.array(entry.traction.nominal))
     load = weigh(space, np.concatenate(x), np.concatenate(force), n)

@@ -1,18 +1,20 @@
-"""Do the tests bite? `python -m mpm.study.mutants [--only PATTERN] [--of N] [--seed S]` changes one place of the product at a time and runs the nearest tests.
+"""Do the tests bite? `python -m mpm.study.mutants [--only PATTERN] [--of N] [--seed S] [--minutes M]` changes one place of the product at a time
+and runs the nearest tests. What was found is kept in docs/mutants.csv: the same command goes on where it was stopped. `why` says why a survivor may live.
 
 Each module of CHOSEN gets its share of mutants: a comparison turned round, a sum made a difference, a product a quotient, a number doubled, `and` made `or`, a
-`not` dropped. Which places is a matter of the seed alone. A mutant is killed when a test fails, or when the tests take TIMES as long as without it. The product
-itself is not touched: the tests run over a copy, in a folder that is removed.
+`not` dropped. Which places is a matter of the seed and of the changed text, so an edit elsewhere in a module leaves its other mutants as they are.
+A mutant is killed when a test fails, or when the tests take TIMES as long as without it. The product itself is not touched: the tests run over a copy.
 Printed: a line a mutant, then by module the share that was killed; survivors with their line, to be judged: a test that is missing, or a change that no test
-could see (EQUAL says of which kinds that is known).
-Times     with warm compile caches 5 to 60 s a mutant; a mutant of a kernel compiles it anew
+could see (EQUAL says of which kinds that is known). To try one again, delete its row.
+Times     5 to 60 s a mutant; modules of PLAIN are tested uncompiled
 Fails when: the tests of a module fail without a mutant, which is said
 """
 
 import argparse
 import ast
+import csv
+import hashlib
 import os
-import random
 import shutil
 import subprocess
 import sys
@@ -23,17 +25,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-TIMES, PATIENCE = 5.0, 120.0  # as long as without a mutant, and seconds more, before one counts as killed
+KEPT = ROOT / "docs" / "mutants.csv"
+COLUMNS = ("module", "line", "before", "after", "nth", "result", "why")
+TIMES, PATIENCE = 5.0, 60.0  # as long as without a mutant, and seconds more, before one counts as killed
 LARGE = 1e6  # numbers from here on are bounds that nothing meets
 CHOSEN = {  # module: (mutants, the nearest tests)
-    "mpm/materials/hencky.py": (6, "tests/materials/test_hencky.py tests/materials/test_menu.py"),
-    "mpm/materials/neo_hookean.py": (5, "tests/materials/test_menu.py"),
+    "mpm/materials/hencky.py": (6, "tests/materials/test_hencky.py"),
+    "mpm/materials/neo_hookean.py": (5, "tests/materials/test_neo_hookean.py"),
     "mpm/materials/laws.py": (10, "tests/materials/test_laws.py"),
     "mpm/materials/radial.py": (10, "tests/materials/test_return_maps.py"),
     "mpm/materials/clipped.py": (10, "tests/materials/test_return_maps.py"),
-    "mpm/heat/exchange.py": (6, "tests/heat tests/point"),
-    "mpm/heat/local.py": (8, "tests/heat tests/point"),
-    "mpm/heat/programmes.py": (4, "tests/heat tests/point"),
+    "mpm/heat/exchange.py": (6, "tests/heat/test_surface.py tests/heat/test_exchange_kinds.py"),
+    "mpm/heat/local.py": (8, "tests/heat/test_local.py"),
+    "mpm/heat/programmes.py": (4, "tests/heat/test_exchange_kinds.py"),
     "mpm/integrate/timestep.py": (12, "tests/integrate/test_timestep.py"),
     "mpm/guards.py": (12, "tests/test_guards.py"),
     "mpm/sweep/store.py": (10, "tests/sweep/test_store.py tests/sweep/test_batches.py"),
@@ -44,6 +48,7 @@ CHOSEN = {  # module: (mutants, the nearest tests)
     "mpm/config/quantities.py": (6, "tests/config/test_units.py tests/config/test_quantities.py"),
     "mpm/config/measured.py": (6, "tests/config/test_measured.py"),
 }
+PLAIN = ("mpm/materials/hencky.py", "mpm/materials/neo_hookean.py", "mpm/materials/laws.py", "mpm/heat/local.py", "mpm/integrate/timestep.py")
 EQUAL = "a bound that is never met (x < y for x <= y), a margin of round-off, a number that only a message shows, a size of buffers"
 COMPARED = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
 COMPUTED = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
@@ -101,10 +106,10 @@ def textual(node: ast.BinOp) -> bool:
     return any(isinstance(side, ast.JoinedStr | ast.List) or (isinstance(side, ast.Constant) and isinstance(side.value, str)) for side in ast.walk(node))
 
 
-def run(folder: Path, tests: str, limit: float) -> tuple[bool, float]:
+def run(folder: Path, path: str, tests: str, limit: float) -> tuple[bool, float]:
     """Whether the tests pass over the copy, and how long they took; too long counts as not."""
     began = time.monotonic()
-    environment = os.environ | {"PYTHONPATH": f"{folder}", "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = os.environ | {"PYTHONPATH": f"{folder}", "PYTHONDONTWRITEBYTECODE": "1"} | ({"NUMBA_DISABLE_JIT": "1"} if path in PLAIN else {})
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", *tests.split()]
     try:
         done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=limit, check=False)
@@ -122,24 +127,53 @@ def copy(folder: Path) -> None:
     shutil.copytree(ROOT / "cli", folder / "mpm_cli", ignore=shutil.ignore_patterns("__pycache__"))
 
 
-def study(folder: Path, path: str, wanted: int, tests: str, rng: random.Random) -> tuple[int, int]:
-    """Run the mutants of one module: how many there were, how many survived."""
-    place = folder / path
+def chosen(path: str, source: str, wanted: int, seed: int) -> list[tuple[tuple, Mutant]]:
+    """(key, mutant) of those that a seed picks, in the order of the file. The key is what is changed, and the how manieth of its like."""
+    seen: dict[tuple, int] = {}
+    every = []
+    for mutant in mutants(path, source):
+        like = (path, " ".join(mutant.before.split()), mutant.text)
+        seen[like] = seen.get(like, -1) + 1
+        every.append(((*like, str(seen[like])), mutant))
+    every.sort(key=lambda pair: hashlib.sha256(f"{seed} {pair[0]}".encode()).digest())
+    return sorted(every[:wanted], key=lambda pair: pair[1].start)
+
+
+def kept() -> dict[tuple, dict]:
+    """Rows of the file of results by key."""
+    if not KEPT.exists():
+        return {}
+    with open(KEPT, newline="", encoding="utf-8") as file:
+        return {(row["module"], row["before"], row["after"], row["nth"]): row for row in csv.DictReader(file)}
+
+
+def keep(rows: dict[tuple, dict]) -> None:
+    """Write the file of results, by module and line."""
+    with open(KEPT, "w", newline="", encoding="utf-8") as file:
+        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        out.writeheader()
+        out.writerows(sorted(rows.values(), key=lambda row: (row["module"], int(row["line"]), row["after"])))
+
+
+def study(folder: Path, path: str, picked: list, tests: str, rows: dict[tuple, dict], until: float) -> None:
+    """Run the mutants of one module that have no row, until a time."""
+    place, took = folder / path, 0.0
     source = place.read_text(encoding="utf-8")
-    sound, took = run(folder, tests, 1800.0)
-    if not sound:
-        print(f"{path}: its tests ({tests}) fail without a mutant", flush=True)
-        return 0, 0
-    every = mutants(path, source)
-    chosen, alive = sorted(rng.sample(every, min(wanted, len(every))), key=lambda mutant: mutant.start), 0
-    for mutant in chosen:
+    for key, mutant in picked:
+        if key in rows or time.monotonic() > until:
+            continue
+        if not took:
+            sound, took = run(folder, path, tests, 600.0)
+            if not sound:
+                print(f"{path}: its tests ({tests}) fail without a mutant", flush=True)
+                return
         data = source.encode()
         place.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
-        survived, _ = run(folder, tests, TIMES * took + PATIENCE)
-        alive += survived
+        survived, _ = run(folder, path, tests, TIMES * took + PATIENCE)
+        rows[key] = dict(zip(COLUMNS, (path, mutant.line, key[1], mutant.text, key[3], "survived" if survived else "killed", ""), strict=True))
+        keep(rows)
         print(f"{'SURVIVED' if survived else 'killed  '} {path}:{mutant.line}: {mutant.before} -> {mutant.text}", flush=True)
     place.write_text(source, encoding="utf-8")
-    return len(chosen), alive
 
 
 def main() -> None:
@@ -147,18 +181,23 @@ def main() -> None:
     words.add_argument("--only", default="", help="modules whose path holds this text")
     words.add_argument("--of", type=int, default=1, help="times as many mutants")
     words.add_argument("--seed", type=int, default=1, help="which places are changed")
+    words.add_argument("--minutes", type=float, default=1e6, help="begin no mutant after this time")
     given = words.parse_args()
-    rows = []
+    until, rows = time.monotonic() + 60 * given.minutes, kept()
+    picked = {path: chosen(path, (ROOT / path).read_text(encoding="utf-8"), wanted * given.of, given.seed) for path, (wanted, _) in CHOSEN.items()}
     with tempfile.TemporaryDirectory(prefix="mpm-mutants-") as name:
         folder = Path(name)
         copy(folder)
-        for path, (wanted, tests) in CHOSEN.items():
+        for path, (_, tests) in CHOSEN.items():
             if given.only in path:
-                rows.append((path, *study(folder, path, wanted * given.of, tests, random.Random(f"{given.seed} {path}"))))
-    for path, count, alive in rows:
-        print(f"{path:32} {count - alive:3} of {count:3} killed")
-    count, alive = (sum(row[k] for row in rows) for k in (1, 2))
-    print(f"{count - alive} of {count} mutants killed ({100 * (count - alive) / max(count, 1):.0f} %); those that survived may be equal: {EQUAL}")
+                study(folder, path, picked[path], tests, rows, until)
+    total = {"killed": 0, "survived": 0, "": 0}
+    for path, keys in picked.items():
+        found = [rows.get(key, {"result": ""})["result"] for key, _ in keys]
+        print(f"{path:32} {found.count('killed'):3} of {len(found):3} killed, {found.count('')} to do")
+        total = {name: count + found.count(name) for name, count in total.items()}
+    done = total["killed"] + total["survived"]
+    print(f"{total['killed']} of {done} mutants killed ({100 * total['killed'] / max(done, 1):.0f} %), {total['']} to do; survivors may be equal: {EQUAL}")
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ def exact_solution(experiment):
     try:
         return fitting(experiment, type(experiment.exact).kind)
     except ValueError as why:
-        raise SceneError(f"exact: {why}; take `exact` out, or make the scene its problem") from None
+        raise SceneError(("exact",), f"{why}; take `exact` out, or make the scene its problem") from None
 
 
 def fitting(experiment, kind: str):

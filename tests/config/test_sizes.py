@@ -30,6 +30,16 @@ def test_sizes(scene, path, value, message, allowed, request):
     assert told == ([(path, message, allowed)] if message else [])
 
 
+def test_sides_stand_on_grid_lines_where_bodies_move(block, loaf):
+    with pytest.raises(ConfigError) as told:
+        load(block, {"grid.cell": block["grid"]["size"][0] / 2.5})
+    (problem,) = [one for one in told.value.problems if one.path == "grid.size.0"]
+    assert "is no whole number of cells" in problem.message
+    better = float(problem.allowed.rpartition("grid.cell of ")[2].split()[0])
+    load(block, {"grid.cell": better})
+    load(loaf, {"grid.cell": "3 mm"})  # 44 mm: no wall acts on what does not move
+
+
 def test_points_of_a_sweep_too(loaf):
     with pytest.raises(ConfigError, match=r"the point cell = 5e-06 is wrong: grid.cell: there would be about .* unknowns"):
         plan(load({**loaf, "sweep": {"axes": {"grid.cell": ["2 mm", "5 um"]}}}))

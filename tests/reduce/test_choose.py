@@ -160,11 +160,11 @@ def test_a_smaller_config_that_no_method_runs_gives_way(scenes):
 
     def run(experiment):
         if experiment.grid.dimension == 0:
-            raise SceneError("not today")
+            raise SceneError(("method",), "not today")
         return run_named(experiment)
 
     done = smallest(mpm.load(scenes.gentle(1) | {"model": "auto"}), run)
-    assert done.outcome.ok and name_of(done) == "full" and why(done, "lumped") == "not today"
+    assert done.outcome.ok and name_of(done) == "full" and why(done, "lumped") == "method: not today"
 
 
 def test_a_run_that_is_stopped_stays_stopped(scenes):

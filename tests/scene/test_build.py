@@ -86,7 +86,6 @@ def refused(core, *words, changes=None, dimension=1, **sections):
 
 
 def test_refused_with_advice(core):
-    refused(core, "grid.cell", "whole number", changes={"grid.cell": 0.3})
     refused(core, "method.offset", changes={"method.offset": [0.3, 0.0]}, dimension="axisymmetric")
     rigid = core.config(1)["bodies"] | {"stone": {"shape": {"box": {"lower": [1.5], "upper": [1.75]}}, "material": "stone"}}
     materials = core.config(1)["materials"] | {"stone": {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}}
