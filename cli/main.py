@@ -8,6 +8,7 @@ import sys
 import warnings
 
 import typer
+from mpm_cli.ask import ask
 from mpm_cli.bench import bench
 from mpm_cli.chart import chart
 from mpm_cli.collect import collect
@@ -21,6 +22,7 @@ from mpm_cli.plot import plot
 from mpm_cli.report import report
 from mpm_cli.run import run
 from mpm_cli.schema import schema
+from mpm_cli.sensitivity import sensitivity
 from mpm_cli.stability import stability
 from mpm_cli.status import status
 from mpm_cli.streams import streams
@@ -29,7 +31,7 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, fit, plan, chart, stability, status, collect, compare, verify, plot, movie, export, report, bench, schema, info, warmup)
+COMMANDS = (run, sweep, fit, sensitivity, ask, plan, chart, stability, status, collect, compare, verify, plot, movie, export, report, bench, schema, info, warmup)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

@@ -18,6 +18,7 @@ _PLACES = {
     "run": "mpm.sweep.api",
     "sweep": "mpm.sweep.api",
     "fit": "mpm.fit.api",
+    "sensitivity": "mpm.sensitivity.api",
     "particles": "mpm.sweep.ragged",
     "export": "mpm.exports",
     "movie": "mpm.movies",

@@ -94,7 +94,13 @@ class Uniform(Design):
     kind: ClassVar[str] = "uniform"
 
 
-DESIGNS: tuple[type[Kind], ...] = (Sobol, Latin, Halton, Uniform)
+class Saltelli(Design):
+    """Saltelli's design for first and total indices: count base rows of parameters + 2 points each."""
+
+    kind: ClassVar[str] = "saltelli"
+
+
+DESIGNS: tuple[type[Kind], ...] = (Sobol, Latin, Halton, Uniform, Saltelli)
 
 
 class Sweep(Model):

@@ -156,7 +156,8 @@ class Vary:
                 if parameter.low >= parameter.high:
                     self.found.append(Finding(at, "the range must rise", "[smallest, largest]"))
                 parameters.append(parameter)
-        return [Group("sample", parameters, sample.count, where, sample.kind, sample.seed)] if parameters else []
+        size = sample.count * (len(parameters) + 2 if sample.kind == "saltelli" else 1)
+        return [Group("sample", parameters, size, where, sample.kind, sample.seed)] if parameters else []
 
     def points(self, points: tuple[dict[str, Any], ...]) -> list[Group]:
         """Points that leave a parameter out have it as the config says."""
