@@ -109,8 +109,9 @@ def overrides(pairs: list[str] | None) -> dict[str, Any]:
 def load(config: Path, pairs: list[str] | None, smoke: bool = False) -> Any:
     """The experiment that a command is about."""
     from mpm.config import load as read
+    from mpm.config.cautions import cautions
 
     experiment = read(config, overrides(pairs), smoke=smoke)
-    for text in experiment.cautions:
+    for text in cautions(experiment):
         warn(f"warning: {text}")
     return experiment

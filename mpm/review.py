@@ -16,8 +16,7 @@ import numpy as np
 
 from mpm.materials import value
 from mpm.records.variables import describe
-from mpm.scene.build import elastic_law, stress_temperature_modulus
-from mpm.scene.law import law
+from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning

@@ -12,8 +12,14 @@ COLD = 223.15  # K, -50 °C: below it a number without a unit was rather meant i
 MOST_TOLD = 5
 
 
-def cautions(experiment: Any, root: Node) -> list[str]:
-    """Temperatures that are numbers without a unit, and colder than the applications of this code: 20 is 20 K. Snapshots that no picture can show."""
+def cautions(experiment: Any) -> list[str]:
+    """Temperatures that are numbers without a unit, and colder than the applications of this code: 20 is 20 K. Snapshots that no picture can show.
+
+    Empty where nothing is known of the config's text.
+    """
+    root: Node | None = experiment._tree
+    if root is None:
+        return []
     found = []
     for path, quantity in temperatures(experiment):
         for node in numbers(root, path):

@@ -101,13 +101,6 @@ class Experiment(Model):
         return storable(self._path.stem) if self._path else "experiment"
 
     @property
-    def cautions(self) -> list[str]:
-        """What is valid in the config and seldom meant, with places; empty where nothing is known of its text."""
-        from mpm.config.cautions import cautions
-
-        return cautions(self, self._tree) if self._tree is not None else []
-
-    @property
     def moving(self) -> bool:
         """Whether any body is elastic, so that there is mechanics at all."""
         return any(self.materials[body.material].elastic is not None for body in self.bodies.values())

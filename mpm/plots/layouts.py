@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mpm.plots import finals, series, words
-from mpm.plots.style import INK, QUIET, figure, styled
+from mpm.plots.style import INK, QUIET, empty, figure, styled
 from mpm.plots.view import Axis, View, spread
 
 
@@ -157,12 +157,3 @@ def all_finals(view: View) -> Any:
         for ax in grid[len(names) :]:
             ax.set_axis_off()
         return fig
-
-
-def empty(view: View, text: str) -> Any:
-    """A figure that says why it shows nothing."""
-    fig = figure(view.title, 2.4)
-    ax = fig.add_subplot()
-    ax.set_axis_off()
-    ax.text(0.0, 0.8, text, color=QUIET, fontsize=11, transform=ax.transAxes, va="top")
-    return fig

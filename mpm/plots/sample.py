@@ -14,7 +14,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from mpm.plots import words
 from mpm.plots.finals import wide
-from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, figure, plain_ticks
+from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, empty, figure, plain_ticks
 from mpm.plots.view import Axis, View
 
 FEWEST = 10
@@ -25,8 +25,6 @@ RING = {"color": OKABE_ITO[0], "mfc": "white", "ms": 4, "mew": 1.2, "ls": "None"
 
 def scatter(view: View, most: int = 3) -> Any:
     """Small multiples: a row an observable, a column a parameter, rank correlations at the end of the row."""
-    from mpm.plots.layouts import empty
-
     parameters = view.parameters[:MOST_PARAMETERS]
     names = chief(view)[:most]
     if not parameters or not names:

@@ -12,19 +12,21 @@ from mpm.basis import BASES
 from mpm.boundary import extents
 from mpm.config.shapes_fit import home
 from mpm.error import Motion
-from mpm.materials import EllipseClipped, EllipseRadial, Hencky, HenckyWarm, NeoHookean, NoFlow
+from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
+from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit
 from mpm.scene.inventory import ticks
-from mpm.scene.law import law
+from mpm.scene.law import elastic_law, expansion_law, law
 from mpm.scene.meeting import cornered, meeting, plan_meetings
 from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
 from mpm.scene.shapes import cells, shape
+from mpm.scene.total import total_bodies, wall_kinds
 from mpm.scene.traction import loaded
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
@@ -32,11 +34,9 @@ from mpm.state import (
     Average,
     Axisymmetric,
     Body,
-    Expansion,
     GridHeating,
     Heating,
     Isothermal,
-    Latched,
     Line,
     NoExchange,
     NoExpansion,
@@ -44,16 +44,11 @@ from mpm.state import (
     NoRadiation,
     Particles,
     Plane,
-    Softening,
     Thermal,
     Volume,
 )  # fmt: skip
 from mpm.total.drive import begin as begin_nodes
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
-
-SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("axis", "outer", "bottom", "top"),
-         3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
-STRAINS = {1: 3, 2: 4, 3: 6}
 
 
 def output_times(experiment, every: float | None = None) -> np.ndarray:
@@ -93,37 +88,6 @@ def sample(experiment, name: str, most: float = math.inf):
     radial = grid.dimension == "axisymmetric"
     cut = by_nodes(cells(outline, edges, radial), grid.cell)
     return cut, edges, outline_of(outline, cut, edges, radial)
-
-
-def elastic_law(model):
-    """The run-time law, with Lame constants from whichever pair was given; of E = 1, with its law, where E follows temperature."""
-    kind = {"hencky": Hencky, "neo_hookean": NeoHookean}[type(model).kind]
-    if model.E is not None:
-        E = float(model.E.value) if type(model.E).kind == "constant" else 1.0
-        found = kind(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
-        return found if type(model.E).kind == "constant" else HenckyWarm(found, law(model.E))
-    if model.lam is not None:
-        return kind(model.mu, model.lam)
-    return kind(model.mu, model.K - 2 * model.mu / 3)
-
-
-def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
-    """gamma [Pa/K] = 3 K alpha_L = c lam (docs/physics.md 0)."""
-    coefficient, gamma = getattr(expansion, "coefficient", None), getattr(expansion, "gamma", None)
-    if coefficient is not None:
-        return 3 * (elastic.lam + 2 * elastic.mu / 3) * coefficient
-    return gamma if gamma is not None else expansion.c * elastic.lam
-
-
-def expansion_law(model, elastic, theta: np.ndarray, zero: float):
-    """The run-time expansion; `theta` (N,) are temperatures at the start, less `zero`. A coefficient follows the moduli, a modulus gamma does not."""
-    if isinstance(elastic, HenckyWarm):
-        inner = expansion_law(model, elastic.one, theta, zero)
-        return inner if getattr(model, "gamma", None) is not None else Softening(inner, elastic.E)
-    gamma, shift = stress_temperature_modulus(model, elastic), zero - model.reference
-    if type(model).kind != "latched":
-        return Expansion(gamma, shift)
-    return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)
 
 
 def moving_body(experiment, name: str, zero: float, space, meets: bool, most: float = math.inf):
@@ -168,14 +132,6 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams, outline
 
 
-def spin_tensor(omega, D: int) -> np.ndarray:
-    """W with W x = omega cross x."""
-    if D == 2:
-        return np.array([[0.0, -omega], [omega, 0.0]])
-    a, b, c = omega
-    return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
-
-
 def schemes(experiment):
     """Transfer of velocity; blend, affine part and XPIC order (0: none) of the transfer of temperature."""
     velocity, temperature = experiment.method.transfer, experiment.method.temperature
@@ -214,7 +170,6 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
     scheme, blend, affine, sharp = schemes(experiment)
     times, references = output_times(experiment), ()
     if experiment.method.frame == "total":
-        from mpm.scene.total import total_bodies, wall_kinds  # which asks this module for laws
         bodies, references, surroundings = total_bodies(experiment, zero, space)
         seams, walls = (None,) * len(names), wall_kinds(experiment)
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))

@@ -1,7 +1,10 @@
-"""Laws of temperature: from a config's to those of a run."""
+"""Laws of materials: from a config's to those of a run."""
 
-from mpm.materials import Bump, Constant, Logistic, Porous, table
+import numpy as np
+
+from mpm.materials import Bump, Constant, Hencky, HenckyWarm, Logistic, NeoHookean, Porous, table
 from mpm.scene.menus import known
+from mpm.state import Expansion, Latched, Softening
 
 LAW = {
     "constant": lambda model: Constant(float(model.value)),
@@ -15,3 +18,34 @@ LAW = {
 def law(model):
     """The run-time law of a config's law."""
     return known(LAW, type(model).kind, "law")(model)
+
+
+def elastic_law(model):
+    """The run-time law, with Lame constants from whichever pair was given; of E = 1, with its law, where E follows temperature."""
+    kind = {"hencky": Hencky, "neo_hookean": NeoHookean}[type(model).kind]
+    if model.E is not None:
+        E = float(model.E.value) if type(model.E).kind == "constant" else 1.0
+        found = kind(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
+        return found if type(model.E).kind == "constant" else HenckyWarm(found, law(model.E))
+    if model.lam is not None:
+        return kind(model.mu, model.lam)
+    return kind(model.mu, model.K - 2 * model.mu / 3)
+
+
+def stress_temperature_modulus(expansion, elastic: Hencky) -> float:
+    """gamma [Pa/K] = 3 K alpha_L = c lam (docs/physics.md 0)."""
+    coefficient, gamma = getattr(expansion, "coefficient", None), getattr(expansion, "gamma", None)
+    if coefficient is not None:
+        return 3 * (elastic.lam + 2 * elastic.mu / 3) * coefficient
+    return gamma if gamma is not None else expansion.c * elastic.lam
+
+
+def expansion_law(model, elastic, theta: np.ndarray, zero: float):
+    """The run-time expansion; `theta` (N,) are temperatures at the start, less `zero`. A coefficient follows the moduli, a modulus gamma does not."""
+    if isinstance(elastic, HenckyWarm):
+        inner = expansion_law(model, elastic.one, theta, zero)
+        return inner if getattr(model, "gamma", None) is not None else Softening(inner, elastic.E)
+    gamma, shift = stress_temperature_modulus(model, elastic), zero - model.reference
+    if type(model).kind != "latched":
+        return Expansion(gamma, shift)
+    return Latched(gamma, shift, np.minimum(theta, theta.dtype.type(model.set - zero)), model.set - zero)

@@ -9,10 +9,11 @@ from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
 from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
-from mpm.scene.build import SceneError, elastic_law, expansion_law, output_times
+from mpm.scene.build import output_times
 from mpm.scene.inventory import output_bytes, physics
-from mpm.scene.law import law
+from mpm.scene.law import elastic_law, expansion_law, law
 from mpm.scene.menus import acting
+from mpm.scene.refusal import SceneError
 from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
 
 AXES = ("xx", "yy", "zz")

@@ -13,9 +13,8 @@ from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import bounds
 from mpm.materials import HenckyWarm, value
 from mpm.materials.porous import aspect
-from mpm.scene.build import elastic_law, stress_temperature_modulus
 from mpm.scene.exchange import programme, robin
-from mpm.scene.law import law
+from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
 

@@ -9,9 +9,9 @@ from mpm.boundary import CONTACT, KINDS, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
 from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, value
-from mpm.scene.build import SIDES, STRAINS, elastic_law, expansion_law, spin_tensor
+from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import exchanging_surface
-from mpm.scene.law import law
+from mpm.scene.law import elastic_law, expansion_law, law
 from mpm.scene.menus import pulling
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError

@@ -9,10 +9,10 @@ adaptive method will take. A factor of two is what they aim at; tests/study/test
 import sys
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-CONFIGS = Path(__file__).parents[2] / "configs"
+from mpm.study import CONFIGS
+
 SCENES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("scenes/slab", {}),
     ("scenes/loaf", {}),

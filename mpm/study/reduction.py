@@ -12,7 +12,9 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-FOLDER = Path(__file__).parents[2] / "configs" / "studies" / "reduction"
+from mpm.study import CONFIGS
+
+FOLDER = CONFIGS / "studies" / "reduction"
 STORE = Path("results") / "reduction.json"
 REPEATS, ENOUGH = 3, 5.0  # runs of each, unless one takes so many seconds
 HEAD = """# No more model than a scene needs

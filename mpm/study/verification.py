@@ -14,9 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
+from mpm.study import CONFIGS
+from mpm.study.wave import table
+
 ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperature, K", "error_relative": "all fields, relative"}  # the first that a run has
 BESIDE = ("error_velocity", "error_stress")
-FOLDER = Path(__file__).parents[2] / "configs" / "verification"
+FOLDER = CONFIGS / "verification"
 HEAD = """# Verification problems
 
 Made by `python -m mpm.study.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands
@@ -150,8 +153,6 @@ def written(text: str) -> tuple[dict[str, str], str]:
 
 def main(names: list[str]) -> None:
     """Measure every config, or those named, and write the table; a line on standard error for each."""
-    from mpm.study.wave import table
-
     target, paths = FOLDER / "README.md", {path.stem: path for path in sorted(FOLDER.glob("*.yaml"))}
     unknown = [name for name in names if name not in paths]
     if unknown:

@@ -6,6 +6,8 @@ a second to heat, so what a transfer loses by itself shows in the damping: that 
 
 from dataclasses import dataclass
 
+from mpm.study import CONFIGS
+
 CELLS = 64
 PROMISED = 2e-3, 0.05  # errors of frequency and of damping that the best transfer must be within
 PAIRS = (
@@ -42,10 +44,9 @@ def measure(velocity: dict, temperature: dict, form: str = "adiabat", cells: int
     """Run the wave with one pair of transfers. RuntimeError where it does not complete."""
     from mpm.config import load
     from mpm.runner import run_point
-    from mpm.study.verification import FOLDER
 
     changes = {"method.transfer": velocity, "method.temperature": temperature, "materials.unit.heating.elastic.form": form, "grid.cell": 1 / cells}
-    run = run_point(load(FOLDER / "standing_wave.yaml", changes))
+    run = run_point(load(CONFIGS / "verification" / "standing_wave.yaml", changes))
     if not run.outcome.ok:
         raise RuntimeError(f"{velocity}, {temperature}: {run.outcome}")
     names = (next(iter(velocity)), next(iter(temperature)), form)

@@ -13,11 +13,11 @@ from typing import Any
 
 from mpm.records.checkpoint import EVERY, Checkpoint
 from mpm.records.netcdf import DamagedFile, summary
-from mpm.records.provenance import versions
 from mpm.records.variables import PENDING, STATUS
 from mpm.sweep import engine
 from mpm.sweep.api import sound, swept_paths, taken
 from mpm.sweep.lock import Refused
+from mpm.sweep.manifest import about_one
 from mpm.sweep.queue import Points, missing, stale
 from mpm.sweep.resources import Resources
 from mpm.sweep.store import Store
@@ -104,17 +104,3 @@ def write(store: Store, experiment: Any, case: Any, record: Any, smoke: bool) ->
     if old is None or old.get("digest") != digest:
         put(path, *dataset(plan_of(case.experiment), about, {case.run_id: record}), record.line | {"digest": digest})
     return path
-
-
-def about_one(experiment: Any, case: Any, record: Any, smoke: bool = False) -> dict[str, Any]:
-    """What experiment.json would say of the point alone."""
-    return {
-        "title": experiment.title,
-        "name": experiment.name,
-        "source": experiment.source,
-        "smoke": smoke,
-        "swept": [],
-        "resolved": case.experiment.resolved(),
-        "versions": versions(),
-        "threads": record.facts.get("threads", 1),
-    }

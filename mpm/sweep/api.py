@@ -18,6 +18,7 @@ from mpm.sweep import engine
 from mpm.sweep.background_collect import Gather, NotCollected
 from mpm.sweep.engine import Engine, Options
 from mpm.sweep.lock import Lock, Refused, said_owner
+from mpm.sweep.manifest import about_one
 from mpm.sweep.queue import Points, counts, exit_code, stale, warned
 from mpm.sweep.report import Reporter
 from mpm.sweep.result import Result
@@ -129,8 +130,8 @@ def collect_last(gather: Gather, supervisor: Engine) -> bool:
 
 def run_engine(supervisor: Engine, options: Options) -> None:
     """Workers for what is due. `jobs=0` runs the points in this process."""
-    from mpm.sweep.executors import Serial
     from mpm.sweep.processes import Processes
+    from mpm.sweep.serial import Serial
 
     if not supervisor.any_can_run():
         return
@@ -192,7 +193,6 @@ def collect_folder(out: Path, target: Path | None = None) -> tuple[Path, bool, d
 def run_one(experiment: Any, beat: Callable[[float, float], bool] | None = None, max_runs: int = 10_000, threads: int = 1) -> tuple[bytes, Any]:
     """The first point of an experiment in this process, kept nowhere: the bytes of its dataset, and its record. `threads` share one large run."""
     from mpm.records.netcdf import to_bytes
-    from mpm.sweep.alone import about_one
     from mpm.sweep.cases import plan as plan_of
     from mpm.sweep.collect import dataset
     from mpm.sweep.worker import compute
@@ -219,7 +219,9 @@ def run(experiment: Any, beat: Callable[[float, float], bool] | None = None, thr
 
 def caution(experiment: Any) -> None:
     """A Python warning for what is valid in the config and seldom meant; the shell has lines of its own."""
-    for text in experiment.cautions:
+    from mpm.config.cautions import cautions
+
+    for text in cautions(experiment):
         warnings.warn(text, stacklevel=3)
 
 

@@ -8,11 +8,9 @@ import functools
 import importlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -27,7 +25,7 @@ SHARE = 20
 SMALL = 8_000_000  # bytes of results that are collected in this process: a few tenths of a second
 QUICK = 200  # points that are collected even when told to leave at once
 LOOK = 0.02  # s between two looks whether it is done
-START = "import json, sys; sys.path[:] = json.loads(sys.argv[2]); from mpm.sweep.background_collect import main; main()"
+START = "import json, sys; sys.path[:] = json.loads(sys.argv[2]); from mpm.sweep.collect_apart import main; main()"
 
 
 class NotCollected(Exception):
@@ -158,21 +156,3 @@ class Gather:
         if self.child is not None:
             self.child.end()
             self.child = None
-
-
-def main() -> None:
-    """Started by `Beside` with the folder and the module path as arguments."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # they reach the whole group; what to do about them is the parent's choice
-        signal.signal(number, signal.SIG_IGN)
-    threading.Thread(target=lambda: (sys.stdin.buffer.read(), os._exit(1)), daemon=True).start()
-    from mpm.sweep.api import collect_folder
-
-    try:
-        found: dict[str, Any] = {"written": collect_folder(Path(sys.argv[1]))[1]}
-    except OSError as error:
-        if error.errno is None:
-            raise
-        found = {"errno": error.errno, "strerror": error.strerror, "filename": error.filename}
-    sys.stdout.write(json.dumps(found))
-    sys.stdout.flush()
-    os._exit(0)

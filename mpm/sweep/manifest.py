@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.records.netcdf import write_whole
+from mpm.records.provenance import versions
 from mpm.sweep.lock import Refused
 
 MARK = b',\n "sha256": "'
@@ -41,3 +42,17 @@ def read_manifest(path: Path) -> dict | None:
 def damaged(path: Path, why: str) -> Refused:
     """The refusal."""
     return Refused(f"{path} is damaged ({why}); move it away, the points beside it are kept and found again")
+
+
+def about_one(experiment: Any, case: Any, record: Any, smoke: bool = False) -> dict[str, Any]:
+    """What experiment.json would say of the point alone."""
+    return {
+        "title": experiment.title,
+        "name": experiment.name,
+        "source": experiment.source,
+        "smoke": smoke,
+        "swept": [],
+        "resolved": case.experiment.resolved(),
+        "versions": versions(),
+        "threads": record.facts.get("threads", 1),
+    }

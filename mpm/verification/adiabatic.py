@@ -13,7 +13,7 @@ ORDER = None
 
 def exact(experiment):
     """t -> {temperature}: all strains prescribed, no flow, no exchange, constant alpha."""
-    from mpm.scene.build import elastic_law, stress_temperature_modulus
+    from mpm.scene.law import elastic_law, stress_temperature_modulus
 
     body, material = point(experiment)
     if material.expansion is None or material.heating is None or material.heating.elastic is None or material.flow is not None or experiment.surfaces:

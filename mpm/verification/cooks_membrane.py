@@ -100,7 +100,7 @@ def deflection(u: np.ndarray, X: np.ndarray) -> np.ndarray:
 
 def exact(experiment):
     """The static answer under the config's load; tip_displacement and the error of the field over time."""
-    from mpm.scene.build import elastic_law
+    from mpm.scene.law import elastic_law
 
     _, body = only_body(experiment)
     if experiment.grid.dimension != 2 or len(experiment.bodies) != 1 or type(body.shape).kind != "polygon":

@@ -30,7 +30,7 @@ STRESS = 1.9
 
 def made(experiment) -> Made:
     """The law of a config's scene."""
-    from mpm.scene.build import elastic_law, stress_temperature_modulus
+    from mpm.scene.law import elastic_law, stress_temperature_modulus
 
     _, body = only_body(experiment)
     material, problem = experiment.materials[body.material], experiment.exact

@@ -14,7 +14,7 @@ ORDER = 0.95
 
 def exact(experiment):
     """t -> {Kirchhoff p, q}: strain at the start, every direction held, no heat, constant M, p0 and eta > 0."""
-    from mpm.scene.build import elastic_law
+    from mpm.scene.law import elastic_law
 
     body, material = point(experiment)
     if material.flow is None or material.expansion is not None:

@@ -16,7 +16,7 @@ LOAD = 1.0
 
 def exact(experiment):
     """Displacement and velocity of a body that turns freely, without gravity."""
-    from mpm.scene.build import spin_tensor
+    from mpm.scene.conventions import spin_tensor
 
     _, body = only_body(experiment)
     D = experiment.grid.directions

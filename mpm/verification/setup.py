@@ -73,7 +73,7 @@ def line_box(experiment):
 
 def elastic_only(experiment, body, gravity: bool = False):
     """(Hencky's law, density) of a body that neither flows nor expands."""
-    from mpm.scene.build import elastic_law
+    from mpm.scene.law import elastic_law
 
     material = experiment.materials[body.material]
     hencky = material.elastic is not None and material.elastic.kind == "hencky"

@@ -14,7 +14,7 @@ ORDER = None
 
 def exact(experiment):
     """t -> {temperature, Kirchhoff q}: one stage of isochoric strain rates, eta = 0, no expansion, no exchange."""
-    from mpm.scene.build import elastic_law
+    from mpm.scene.law import elastic_law
 
     body, material = point(experiment)
     if material.flow is None or material.heating is None or material.heating.dissipation is None or material.expansion is not None or experiment.surfaces:

@@ -18,7 +18,7 @@ ORDER = 1.8
 
 def rates(experiment) -> tuple[np.ndarray, float]:
     """The matrix of (U, V, T), and k."""
-    from mpm.scene.build import elastic_law, stress_temperature_modulus
+    from mpm.scene.law import elastic_law, stress_temperature_modulus
 
     body, lower, length = line_box(experiment)
     material = experiment.materials[body.material]

@@ -14,7 +14,7 @@ ORDER = None
 
 def exact(experiment):
     """t -> {strains, stresses}: one stage with its temperature prescribed, every direction free (stress 0) or held."""
-    from mpm.scene.build import elastic_law, stress_temperature_modulus
+    from mpm.scene.law import elastic_law, stress_temperature_modulus
 
     body, material = point(experiment)
     if material.expansion is None or material.flow is not None or len(experiment.loading) != 1:

@@ -3,6 +3,7 @@
 import pytest
 
 from mpm.config import ConfigError, load
+from mpm.config.cautions import cautions
 from mpm.sweep.cases import plan
 
 SLAB = """\
@@ -141,7 +142,7 @@ def test_messages_show_no_control_characters(tmp_path):
 def test_a_number_that_was_rather_meant_in_degrees_celsius(tmp_path, given, cold):
     file = tmp_path / "slab.yaml"
     file.write_text(slab(temperature=given))
-    said = load(file).cautions
+    said = cautions(load(file))
     assert bool(said) == cold
     if cold:
         assert said[0].startswith(f"{file}:4:67: bodies.s.temperature: {given} without a unit is {given} K") and f"say '{given} degC' or '{given} K'" in said[0]
@@ -155,7 +156,7 @@ def test_every_temperature_of_a_config_is_looked_at(tmp_path):
     for plain, law in laws.items():
         text = text.replace(plain, law)
     file.write_text(text)
-    places = [line.split(": ")[1] for line in load(file).cautions if "slab.yaml" in line]
+    places = [line.split(": ")[1] for line in cautions(load(file)) if "slab.yaml" in line]
     heat, swept = "materials.d.heat.fourier", ["sweep.axes.bodies.s.temperature"] * 2 + ["sweep.axes.outside"]
     assert sorted(places) == sorted([f"{heat}.kappa.table.temperature.0", f"{heat}.alpha.bump.at", *swept])
 

@@ -6,7 +6,9 @@ import pytest
 from mpm.boundary import CONTACT, SLIP
 from mpm.config import ConfigError
 from mpm.materials import Hencky
-from mpm.scene.build import SceneError, build, elastic_law, output_times
+from mpm.scene.build import build, output_times
+from mpm.scene.law import elastic_law
+from mpm.scene.refusal import SceneError
 from mpm.state import PAD, NoExchange, NoExpansion, NoHeating
 from mpm.transfer import Apic, Bspline, Flip, Mls
 

@@ -168,7 +168,7 @@ def test_a_disk_that_fails_the_collecting_process_is_told_with_its_path(config, 
 def test_it_ends_with_its_parent(tmp_path):
     """Its standard input closes when the parent dies, however that was."""
     slow = "import time, mpm.sweep.api as api; api.collect_folder = lambda out: (print('in', flush=True), time.sleep(60))\n"
-    slow += "from mpm.sweep.background_collect import main; main()"
+    slow += "from mpm.sweep.collect_apart import main; main()"
     process = subprocess.Popen([sys.executable, "-c", slow, str(tmp_path)], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "in\n"
     process.stdin.close()
