@@ -1,6 +1,7 @@
 """The house rules that a reader cannot see at a glance, read from the syntax trees: imports go down only, flags, sizes, lazy front doors."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -148,3 +149,13 @@ def test_the_front_doors_are_light(module):
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == []
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in MODULES} - {PACKAGE}), ids=lambda folder: folder.name)
+def test_a_room_names_its_files(folder):
+    """The docstring of a room is its index: no file is left out, and none is named in its list that is not there."""
+    said = ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8")))
+    files = {path.stem for path in folder.glob("*.py")} - {"__init__"}
+    assert {name for name in files if not re.search(rf"\b{name}\b", said)} == set()
+    _, _, listed = said.partition("Further files\n")
+    assert {line.split()[0] for line in listed.splitlines() if line.startswith("    ")} <= files

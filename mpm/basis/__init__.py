@@ -7,6 +7,12 @@ Roles     stencil(basis, s) -> first, w, g, d, b    s = x/h; first: index in a p
 Units     cells: divide g and b by h, multiply d by h. The number of nodes seen, len(w), is a constant at compile time.
 May use   mpm.state, mpm.jit                                       May not  see particles, grids or laws
 To add    a kind in mpm.state, a file here, its name in config.numerics and BASES; tests/test_bases.py ranges over BASES.
+
+Further files
+    cubic       cubic B-splines on nodes of spacing h (Steffen, Kirby, Berzins 2008)
+    linear      hat functions on nodes of spacing h
+    quadratic   quadratic B-splines on nodes of spacing h
+    roles       what a basis is asked
 """
 
 from mpm.basis import cubic, linear, quadratic  # registers the bases

@@ -7,6 +7,9 @@ holds a body is the gap of its surface (mpm.contact).
 
 May use   mpm.jit, mpm.lanes, mpm.state                        May not  see particles or laws
 To add    a kind: a number here, its rule in walls.py, its name in config
+
+Further files
+    blocks   which nodes hold material
 """
 
 from mpm.jit import role

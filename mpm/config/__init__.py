@@ -2,9 +2,36 @@
 
 Made of  base, quantities, units        kinds and menus, SI floats, pint
 Models   laws, materials, bodies, boundary, numerics, output, sweep, experiment: field names as users write them
-Reading  nodes (YAML with places), merge (extends, overrides), names (kappa, κ -> a path), slots (what a path may hold), load
-Errors   problems, explain (pydantic's words into ours), loose (go on after an error), checks, shapes_fit, condition, vary
+Reading  nodes (YAML with places), merge (extends, overrides), names (kappa, κ -> a path), schema_paths (what a path may hold), load
+Errors   problems, explain (pydantic's words into ours), partial (go on after an error), checks, shapes_fit, condition, vary
 To add   a kind: a class with `kind = "name"`, listed in its menu. Paths, errors, sweeps and the schema follow.
+
+Further files
+    cautions          what is valid in a config and yet seldom meant
+    chart             what `mpm chart` draws
+    contacts          pairs of bodies that meet
+    curves            curves in CSV files as laboratories and bakers write them
+    exact             exact solutions of moving bodies, and of the ring
+    exact_heat        exact solutions of heat that a run may be compared with, beside those in config.output
+    formula           A formula of one variable x, for lines of theory
+    loading           what is prescribed to a material point
+    loads             forces on the surface of a body that moves, and a drag that brings it to rest
+    measured          measured curves
+    model             which model answers the config
+    parameters        named parameters
+    programmes        temperatures over time
+    rules_fit         rules for named parameters
+    rules_frame       rules of `method.frame
+    rules_mechanics   rules of `method.mechanics
+    rules_output      rules for the output
+    rules_point       rules for grid.dimension 0, the material point
+    rules_scene       rules for bodies, materials, surfaces, walls and grid
+    rules_size        rules for sizes that no machine takes
+    rules_stability   rules of `stability:`
+    scalars           A plain scalar of YAML to a value of Python, by the core schema of YAML 1.2
+    stability         A map of failures
+    tabs              tabs where YAML 1.2 allows them (its sections 6.1 to 6.3), which ruamel.yaml refuses
+    variation         what a sweep section comes to
 """
 
 from mpm.config.experiment import PHYSICS_VERSION, Experiment

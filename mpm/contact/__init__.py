@@ -12,4 +12,10 @@ One velocity field a body, or a group of welded ones. No stiffness, no shorter s
 May use   mpm.integrate and below                          May not  see configs
 Fails when   a contact is narrower than a cell (force right, pressure not); a flow tears new surface, which has no pieces: against walls particles then stand
              for it, between bodies nothing does; a body folds on to itself; sheets are thinner than a cell
+
+Further files
+    block     the arrays that a run works on, and one block of its steps by whichever kernel it needs
+    conduct   one implicit heat step of bodies that touch
+    insync    velocities at the time of the positions
+    links     where heat passes between bodies
 """

@@ -6,6 +6,9 @@
     .zarr            the whole dataset for the cloud (pip install 'mpm[zarr]')
 
 May use     opened, plots.words                                                        May not  see config, sweep or anything that computes
+
+Further files
+    space   fields in three directions, as other programs have them
 """
 
 import importlib

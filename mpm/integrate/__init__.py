@@ -10,4 +10,19 @@ xpic.py    XPIC's extra transfers
 fbar.py    F-bar: changes of volume averaged over the grid
 explicit.py   the mechanical step as the algorithm box of docs/physics.md 4
 timestep.py   every explicit limit, and which one binds
+
+Further files
+    active_nodes         what particles mark of the nodes they touch
+    body_force           A force and a heat source of their own at every particle
+    deformation          F <- (1 + dt L) F: the total deformation gradient, carried only where surfaces or loads need it
+    dither               what is added to a step in float32 before it is rounded on to positions, so that rounding favours no side
+    fracture_surface     new surface where a body tears
+    fragments            gaps in a body
+    grid_heating         elastic heating as the source document has it
+    sorting              particles in the order of the nodes that they touch, where that pays
+    state_check          what a block of steps begins from, looked at as its opening reads it
+    step_threaded        the mechanical step of a large scene in slabs, by threads
+    stress_hencky        what the particles of a chunk answer their trial strains
+    stress_neo_hookean   neo-Hookean response, eight particles at once
+    traction             nominal tractions and drag on a body
 """

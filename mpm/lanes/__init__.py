@@ -27,6 +27,11 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
 absolute, sqrt, minimum, maximum, below, choose, like precision and these four take numbers too, so that one source (mpm.tensors) serves lanes and numbers.
 In plain Python (NUMBA_DISABLE_JIT) lanes are small numpy arrays and every function does the same.
 To add    a Python function, its type, its LLVM instruction: see `operation` in kinds.py.
+
+Further files
+    access       lanes from arrays and numbers, and back
+    arithmetic   arithmetic of lanes, lane by lane, also with numbers
+    order        order and choice over lanes and numbers
 """
 
 from mpm.lanes.access import aligned, four, high, item, join, load4, load8, low, peek, poke, put, splat4, splat8, store, transposed

@@ -10,13 +10,17 @@ Roles (the law chooses the function; all work compiled and in plain Python)
           tangent(law, elastic, trace, size, thermal, theta, dt): potential, stress and slopes of one step, for implicit mechanics; no_flow, radial
           warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
-          values(law, theta), enthalpies(law, theta), temperatures(law, h, guess)     over lanes: many
+          values(law, theta), enthalpies(law, theta), temperatures(law, h, guess)     over lanes: lanes
 Shapes    e: principal elastic Hencky strains [-]; t: principal Kirchhoff stresses [Pa], in the same order, any order
           thermal = gamma (Theta - Theta_0) [Pa], 0.0 without expansion; theta: temperature [K]; dt [s]
           dissipated, psi: energy per reference volume [J/m3]
 May use   mpm.tensors, mpm.jit                                                        May not  see particles, grids or other roles
 To add    a file here that registers its NamedTuple with the roles of its kind, a line below, a menu entry in config;
           tests/materials/test_menu.py finds it in ELASTIC, FLOW or LAWS by itself.
+
+Further files
+    ellipse       what both return maps share
+    return_maps   the return map on arrays, for notebooks and calibration
 """
 
 from mpm.materials.clipped import EllipseClipped

@@ -18,6 +18,13 @@ Measured    a measured curve lies in `/series`, beside the series that it belong
             for it, a number a point; the point with the least misfit is then the chosen point.
 May use     xarray, matplotlib, mpm.records.variables                                    May not  see config, sweep or anything that computes
 To add      a function View -> Figure in layouts.py or a sibling, and a line in `_draw`
+
+Further files
+    chart       the figure of a chart (`chart.nc`)
+    stability   the figure of `mpm stability`
+    style       how figures look
+    theory      the figure of `mpm.study.theory`
+    view        what a dataset holds, as figures ask for it
 """
 
 import errno

@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 
 from mpm.plots import words
-from mpm.plots.style import OKABE_ITO, figure, ordered, styled
+from mpm.plots.style import OKABE_ITO, empty, figure, ordered, styled
 from mpm.plots.view import View, spread
 
 MOST_TIMES = 4
@@ -15,7 +15,6 @@ FIRST = ("temperature", "pressure", "stress_mises", "J", "density")
 
 def snapshot(view: View) -> Any:
     """A field at up to four times: particles where there are any, else the grid's; in 1-D lines, in 3-D the middle slice or the particles of it."""
-    from mpm.plots.layouts import empty
 
     with styled():
         for kind, draw in (("particles", particles), ("grid", grid)):
@@ -66,7 +65,6 @@ def limits(values: np.ndarray) -> dict[str, float]:
 
 def grid(view: View, group: Any) -> Any:
     """A field on the grid."""
-    from mpm.plots.layouts import empty
 
     if not group.data_vars or "file" in group.data_vars:
         return empty(view, "The fields of this sweep lie in the files of its points (grid differs from point to point, or fields are large).")
@@ -112,7 +110,6 @@ def profile(view: View, field: Any, dim: str, chosen: list[int], times: list[str
 
 def particles(view: View, group: Any) -> Any:
     """Particles, coloured by a field."""
-    from mpm.plots.layouts import empty
 
     if "position" not in group:
         return empty(view, "The snapshots hold no positions (add position to output.snapshots.particles).")

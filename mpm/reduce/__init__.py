@@ -12,4 +12,7 @@ lumped.py     one temperature (dimension 0)
 difference.py        how far two runs lie apart in what was asked for; pilots
 choose.py     which of them a tolerance allows; `model: auto`
 To add    a function in one of these, listed in choose.MENU; tests/reduce ranges over the menu
+
+Further files
+    listing   the smaller models of an experiment side by side, for `mpm plan`
 """

@@ -32,6 +32,9 @@ Bounded, tolerance 1e-5: slab as above, Bi 1: 6.4e-4, 1.6e-4, 3.9e-5, 9.8e-6; Bi
 Fails when   a temperature must stay strictly between its data: in the first steps of a shock splines pass it by up to 26 % of the range at a corner one cell
              wide (tests/rigid/test_bounded.py): method `bounded` never does, of order 2 (order 1 behind beta = inf);
              a body in 3-D behind beta = inf is finer than 9 cells a radius: 200 iterations a stage instead of 5.
+
+Further files
+    ordered   sums of products in an order of their own
 """
 
 from mpm.rigid.gather import RigidRun

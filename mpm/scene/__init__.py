@@ -3,6 +3,29 @@
 shapes      Box, Ball, Cylinder, Ring, Polygon: signed distance, bounds, cut quadrature, cut cells
 cut         exact quadrature of a shape cut by a grid
 contents    what each cell holds of a shape, and one particle a cell
+
+Further files
+    build              from a validated experiment to a scene of moving bodies
+    conventions        what a dimension brings
+    cut_boundary       plane regions on a grid
+    exchange           surfaces of a config
+    fracture_surface   faces between the particle cells of a body that may tear
+    groups             the dimensionless groups of a scene
+    implicit           how a scene that asks for implicit mechanics begins
+    inventory          what a config holds, from the config alone
+    law                laws of materials
+    meeting            which bodies of a config can meet which walls and each other, and the pieces of surface that they meet by
+    menus              what the kinds of a menu of the config are to solvers
+    outline            the outline of a sampled body
+    point              material points from validated experiments, and their Runs
+    refusal            the error of a config that is valid but that no method here can run
+    rigid              A rigid scene from a validated experiment, and its Run
+    scales             the scales of a scene's bodies, from the config alone
+    scaling            slow scenes on a fast clock
+    sphere             exact quadrature of a ball cut by a three-dimensional grid
+    still              bodies that do not move
+    total              bodies of a config in the total frame
+    traction           loads of a config to the run-time Load of a body
 """
 
 from mpm.scene.contents import CutCells

@@ -11,6 +11,28 @@ store      the folder of a sweep: points by id (`lines`: their summaries), what 
 status, compare, outlook   what is there; same or not; what would be done
 
 The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.
+
+Further files
+    background_collect   the dataset of a sweep, now and then while it runs and at its end
+    batch_size           how many points to hand out at once
+    case_list            the points of a plan and the dimensions they stand on, as plain data
+    collect_apart        the interpreter that collects a folder beside a sweep
+    ids                  the run ids of a sweep by number and the other way, 24 bytes a point
+    lock                 one writer a folder, held with flock in OUT/lock
+    manifest             experiment.json
+    plan_report          what a sweep would do (`mpm plan`)
+    queue                the points of a plan, which of them are missing, and how they are counted
+    ragged               one snapshot of particles out of the ragged rows of a dataset, as a plain table
+    ranges               the values of each parameter along its dimension, from lists, even ranges and samples
+    report               what an engine tells while it works
+    resources            memory and disk that points may take
+    result               what a sweep came to
+    serial               an Executor whose points run one after another in this process
+    settings             the points of a chart
+    time_axis            points that sampled at different times onto one axis
+    time_columns         arrays of many points over one axis of times, filled point by point
+    verify               every file of a folder against its checksum
+    warming              small scenes whose kernels are what most configs need, for `mpm warmup` without a config
 """
 
 import sys

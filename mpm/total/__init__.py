@@ -13,4 +13,9 @@ Weights     Reference.X gives them; implicit mechanics and contact may use the s
 Source      A. de Vaucorbeil, V. P. Nguyen, C. R. Hutchinson, Comput. Methods Appl. Mech. Engrg. 360 (2020) 112783, who keep particles as carriers of
             velocity; here the nodes keep it
 May use     mpm.integrate (the response of materials), mpm.transfer, mpm.diagnostics and what is below
+
+Further files
+    drive    A whole scene in the total frame
+    forces   what acts on a body in the total frame beside its stress, and what averages its changes of volume
+    heat     heat of a body in the total frame
 """

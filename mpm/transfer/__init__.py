@@ -11,6 +11,11 @@ Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py),
 Shapes    chunk arrays (component, particle of the chunk); nodes (node, columns(D)): momentum (then velocity), mass, room
 May use   mpm.basis, mpm.jit, mpm.state                      May not  see laws
 To add    a scheme: a file with a NamedTuple and its `carry`; a dimension: a file like plane.py
+
+Further files
+    packing    chunks packed for the rows of a stencil, and unpacked
+    roles      what a transfer is asked, and the scratch that its chunks pass through
+    stencils   stencils of a chunk of particles for quadratic B-splines, eight particles at once
 """
 
 from mpm.transfer import line, plane, volume  # registers the dimensions

@@ -3,6 +3,32 @@ for a material point (grid.dimension 0) `exact(experiment) -> solution(times) ->
 for a moving body `exact(experiment) -> Motion` (mpm.error): its fields by material point, and what it starts from.
 
 To add    a file with `exact`, its kind in config.output, a line in EXACT; a config that names it under configs/verification/.
+
+Further files
+    adiabatic            adiabatic compression of a thermoelastic point
+    cooks_membrane       Cook's membrane
+    free_fall            flight under gravity
+    gaussian_box         A Gaussian that spreads in an insulated box, by images
+    hencky_bar           A bar of Hencky material in uniaxial strain that starts straight in its first mode
+    hydrostatic_column   A column of Hencky material under its own weight, in uniaxial strain and at rest
+    layers               layers in contact, slabs or coaxial cylinders
+    lumped_cooling       A rigid body of one temperature that cools through its surface
+    manufactured         A manufactured thermoelastic motion in 1-D and plane strain
+    nafems_t3            A bar between a fixed end and one that follows a sine (NAFEMS benchmark T3)
+    nafems_t4            A plate in steady state
+    path                 the prescribed history of a material point as functions of time
+    relaxation           stress relaxation of a viscoplastic point at held strain, from a state outside the ellipse
+    rheometer            reading M, p0 and eta from a compression test, as from a rheometer's curve
+    rigid_rotation       steady rotation with translation
+    robin_cylinder       A long cylinder, or a disc in plane strain, that cools through its side
+    robin_ring           A hollow cylinder that cools inside and outside alike (Carslaw & Jaeger 1959, 13.4)
+    robin_slab           A slab that cools through both faces, or through one face with the other insulated (Carslaw & Jaeger 1959, 3.11)
+    robin_sphere         A sphere that cools through its surface (Carslaw & Jaeger 1959, 9.4)
+    setup                what the exact solutions need to know of a scene, and refusals where the scene is not their problem
+    shear_heating        adiabatic heating of a point that is sheared past its yield stress
+    standing_wave        A linear thermoelastic wave between insulated walls
+    stefan               melting of a half space behind a hot face
+    thermal_expansion    thermal expansion of an elastic point, free in n of its three directions and held in the others
 """
 
 from mpm.scene.refusal import SceneError
