@@ -13,6 +13,7 @@ Further files
     curves            curves in CSV files as laboratories and bakers write them
     exact             exact solutions of moving bodies, and of the ring
     exact_heat        exact solutions of heat that a run may be compared with, beside those in config.output
+    fit               what is fitted
     formula           A formula of one variable x, for lines of theory
     loading           what is prescribed to a material point
     loads             forces on the surface of a body that moves, and a drag that brings it to rest
@@ -20,9 +21,9 @@ Further files
     model             which model answers the config
     parameters        named parameters
     programmes        temperatures over time
-    rules_fit         rules for named parameters
-    rules_frame       rules of `method.frame
-    rules_mechanics   rules of `method.mechanics
+    rules_fit         rules for named parameters and for what is fitted
+    rules_frame       rules of `method.frame`
+    rules_mechanics   rules of `method.mechanics`
     rules_output      rules for the output
     rules_point       rules for grid.dimension 0, the material point
     rules_scene       rules for bodies, materials, surfaces, walls and grid

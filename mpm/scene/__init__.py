@@ -18,7 +18,7 @@ Further files
     menus              what the kinds of a menu of the config are to solvers
     outline            the outline of a sampled body
     point              material points from validated experiments, and their Runs
-    refusal            the error of a config that is valid but that no method here can run
+    refusal            the error of a config that is valid but that no method here can run, and its place in the config
     rigid              A rigid scene from a validated experiment, and its Run
     scales             the scales of a scene's bodies, from the config alone
     scaling            slow scenes on a fast clock

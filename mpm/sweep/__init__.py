@@ -3,36 +3,29 @@
 cases      `plan`: axes, zips, samples and lists of points -> cases with an id that depends on their content alone
 designs    Sobol, Latin hypercube, Halton and uniform samples
 api        what the shell and Python share: `execute`, `run_one`, `sweep`, `run`; `alone` runs one point to a sweep's folder
-engine     hands out points, hears of them, retries, keeps the clock; knows no processes and no disk; `pace` sizes batches of tiny points
-executors  where points run: the interface, and `Serial`; `processes` has workers on this machine (`worker`), `cluster` has Dask's (`local`, `remote`)
-room       memory and disk that points may take; `tally`: which are missing, and how they are counted
-store      the folder of a sweep: points by id (`lines`: their summaries), what it holds, one writer; `collect` makes sweep.nc of it (`table`, `over`,
-           `align`, `coordinates`; `shards` where it would be too large), `gather` does so while it runs, beside it where that is much
-status, compare, outlook   what is there; same or not; what would be done
+engine     hands out points, hears of them, retries, keeps the clock; knows no processes and no disk; `batch_size` how many tiny ones at once
+executors  where points run: the interface; `serial` in this process, `processes` by workers on this machine (`worker`), `cluster` by Dask's (`local`, `remote`)
+resources  memory and disk that points may take; `queue`: which are missing, and how they are counted
+store      the folder of a sweep: points by id (`summaries` of them), what it holds (`manifest`), one writer
+collect    makes sweep.nc of it (`table`, `time_columns`, `time_axis`, `coordinates`; `shards` where it would be too large); `background_collect` does so
+           while a sweep runs, beside it where that is much
+status, compare, plan_report   what is there; same or not; what would be done
 
 The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.
 
 Further files
-    background_collect   the dataset of a sweep, now and then while it runs and at its end
-    batch_size           how many points to hand out at once
-    case_list            the points of a plan and the dimensions they stand on, as plain data
-    collect_apart        the interpreter that collects a folder beside a sweep
-    ids                  the run ids of a sweep by number and the other way, 24 bytes a point
-    lock                 one writer a folder, held with flock in OUT/lock
-    manifest             experiment.json
-    plan_report          what a sweep would do (`mpm plan`)
-    queue                the points of a plan, which of them are missing, and how they are counted
-    ragged               one snapshot of particles out of the ragged rows of a dataset, as a plain table
-    ranges               the values of each parameter along its dimension, from lists, even ranges and samples
-    report               what an engine tells while it works
-    resources            memory and disk that points may take
-    result               what a sweep came to
-    serial               an Executor whose points run one after another in this process
-    settings             the points of a chart
-    time_axis            points that sampled at different times onto one axis
-    time_columns         arrays of many points over one axis of times, filled point by point
-    verify               every file of a folder against its checksum
-    warming              small scenes whose kernels are what most configs need, for `mpm warmup` without a config
+    case_list       the points of a plan and the dimensions they stand on, as plain data
+    collect_apart   the interpreter that collects a folder beside a sweep
+    ids             the run ids of a sweep by number and the other way, 24 bytes a point
+    lock            one writer a folder, held with flock in OUT/lock
+    ragged          one snapshot of particles out of the ragged rows of a dataset, as a plain table
+    ranges          the values of each parameter along its dimension, from lists, even ranges and samples
+    report          what an engine tells while it works
+    result          what a sweep came to
+    rounds          points that are asked for a few at a time, as a fit does, each a point of an ordinary sweep in one folder
+    settings        the points of a chart
+    verify          every file of a folder against its checksum
+    warming         small scenes whose kernels are what most configs need, for `mpm warmup` without a config
 """
 
 import sys
