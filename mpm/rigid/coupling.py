@@ -1,4 +1,4 @@
-"""Heat through the surface that two bodies share, in the weak form (docs/physics.md 12.2): for any conductance H, perfect contact too.
+"""Heat through the surface that two bodies share, in the weak form (docs/physics.md 12): for any conductance H, perfect contact too.
 
     [v] = v_a - v_b,   F(v) = w_a kappa_a dn v_a + w_b kappa_b dn v_b,   n outward of a,   r = 1/H
     sum over cells of the surface: int c2 [u][v] - c1 (F(u)[v] + [u] F(v)) - c3 F(u) F(v),    c1, c2, c3 = (1, tau, r)/(1 + r tau)
