@@ -126,8 +126,8 @@ class Rounds:
 
     def work(self, engine: Engine, plan: Any) -> None:
         """Run what is due, with the workers that are there."""
-        from mpm.sweep.executors import Serial
         from mpm.sweep.processes import Processes
+        from mpm.sweep.serial import Serial
 
         options = self.options
         if not engine.any_can_run():
