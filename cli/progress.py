@@ -27,7 +27,7 @@ def reporter(as_json: bool, quiet: bool) -> Reporter:
 
 def told(label: str, line: dict, again: bool) -> str:
     """A finished point in a line."""
-    name = label or line["run_id"]
+    name = label or "the point"
     if line["status"] == 0:
         return f"{name}: ok, {line['steps']} steps, {line['wall_time']:.3g} s"
     return f"{name}: {line['error']}" + ("; trying again" if again else "")

@@ -1,8 +1,10 @@
 """mpm run: one point, in this process."""
 
 from pathlib import Path
+from typing import Annotated
 
 import typer
+from mpm_cli.numbers import lines
 from mpm_cli.options import Checkpoints, Config, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, Threads, again, load
 from mpm_cli.progress import Single
 from mpm_cli.sweep import Rerun
@@ -20,6 +22,7 @@ def run(
     max_runs: MaxRuns = 10_000,
     threads: Threads = 1,
     strict: Strict = False,
+    everything: Annotated[bool, typer.Option("--all", help="Print every number, not only those that the config asks for.")] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -50,17 +53,17 @@ def run(
     if progress.stopped:
         leave_at_once()
     if one.ran:
-        progress.finished(experiment.name, record, compiling.seconds() - before)
+        progress.finished(f"{experiment.name} {one.label}".strip(), record, compiling.seconds() - before)
     else:
-        say(f"{experiment.name}: {record.error or 'ok'}; it was there already, and --rerun all runs it again", as_json, quiet)
+        say(f"{f'{experiment.name} {one.label}'.strip()}: {record.error or 'ok'}; it was there already, and --rerun all runs it again", as_json, quiet)
     if progress.stopped:
         say(f"{'a checkpoint is kept' if one.kept else 'no checkpoint could be kept'}; to go on: {again(context)}", as_json, quiet)
     if as_json:
         named = {"status": STATUS[record.status], "warnings": record.warnings, "finals": record.finals, "facts": record.facts}
         document({"out": folder, "dataset": one.dataset, "ran": one.ran, **record.line, **named})
     else:
-        for name, value in record.finals.items() if record.status == OK else ():
-            say(f"  {name} = {value:.9g}", quiet=quiet)
+        for line in lines(record, experiment, everything) if record.status == OK else ():
+            say(line, quiet=quiet)
         if model := record.facts.get("model"):
             dropped = "; ".join(part["dropped"] for part in model["dropped"])
             say(f"  model: {model['name']}" + (f", without {dropped}" if dropped else "; nothing can be left out"), quiet=quiet)

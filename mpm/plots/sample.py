@@ -28,7 +28,7 @@ def scatter(view: View, most: int = 3) -> Any:
     parameters = view.parameters[:MOST_PARAMETERS]
     names = chief(view)[:most]
     if not parameters or not names:
-        return empty(view, "The sample varies no number, or no final has a value.")
+        return empty(view, "The sample varies no number." if not parameters else "No result has a value.")
     columns, order = len(parameters), view.dims
     blocks = [spread_over(view, axis) for axis in parameters]
     fig = figure(view.title, 1.1 + 2.35 * len(names))
@@ -44,6 +44,8 @@ def scatter(view: View, most: int = 3) -> Any:
                 ax.plot(places[view.warned], scale(values)[view.warned], marker="o", **RING)
             crosses(ax, view, places, bad)
             dress(ax, view, axis, name, scale, values, first=j == 0, last=i == len(names) - 1)
+        for j in range(columns if i else 0):
+            grid[i, j].sharex(grid[0, j])
         for ax in grid[i, 1:columns]:
             ax.sharey(grid[i, 0])
             ax.tick_params(labelleft=False)
@@ -57,6 +59,7 @@ def chief(view: View) -> list[str]:
     """Finals that vary and are not book-keeping of the method, the config's own first."""
     dull = ("heat_ledger", "mass_total")
     varies = [name for name in view.finals if name not in dull and np.nanstd(view.root[name].values) > 1e-9 * np.nanmax(np.abs(view.root[name].values))]
+    varies = varies or [name for name in view.finals if name not in dull]  # of a single point that is ok nothing varies
     listed = [name for name in varies if name.startswith(("time_to_", "error_")) or name in view.listed]
     return listed or varies
 

@@ -44,6 +44,8 @@ STYLE = {
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 6),
     "grid.color": "#e6e6e6",
     "grid.linewidth": 0.7,
     "xtick.color": QUIET,

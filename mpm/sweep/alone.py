@@ -19,6 +19,7 @@ from mpm.sweep.api import sound, swept_paths, taken
 from mpm.sweep.lock import Refused
 from mpm.sweep.manifest import about_one
 from mpm.sweep.queue import Points, missing, stale
+from mpm.sweep.report import label
 from mpm.sweep.resources import Resources
 from mpm.sweep.store import Store
 
@@ -30,6 +31,7 @@ class One:
     record: Any
     dataset: Path
     ran: bool  # False where it was finished before
+    label: str = ""  # its swept values
     kept: bool = False  # it was stopped, and a checkpoint is there to go on from
 
 
@@ -65,7 +67,7 @@ def run_in(
             if len(stale(lines)):
                 note("the point that is there was made by other source; --rerun stale runs it again")
             record = store.load(case.run_id)
-            return One(record, write(store, experiment, case, record, smoke), ran=False)
+            return One(record, write(store, experiment, case, record, smoke), False, label(case))
         if rerun == "all":
             store.forget([case.run_id])
         room = Resources(store.out, None, far=False)
@@ -75,10 +77,10 @@ def run_in(
         record = compute(case.run_id, lambda: case.experiment, engine.RUNNER, beat, keeper, threads, config=case.experiment.resolved())
         if record.outcome == "budget":
             record.status, record.error = PENDING, record.error.replace(STATUS[record.status], STATUS[PENDING], 1)
-            return One(record, store.out / "run.nc" if whole(store) else write(store, experiment, case, record, smoke), True, keeper.there)
+            return One(record, store.out / "run.nc" if whole(store) else write(store, experiment, case, record, smoke), True, label(case), keeper.there)
         store.save(record)
         keeper.drop()
-        return One(record, write(store, experiment, case, record, smoke), ran=True)
+        return One(record, write(store, experiment, case, record, smoke), True, label(case))
 
 
 def whole(store: Store) -> bool:

@@ -43,6 +43,8 @@ def compare(one: Path, two: Path, rtol: float = 0.0, atol: float = 0.0) -> list[
     told: list[str] = []
     with contextlib.ExitStack() as stack:
         a, b = (stack.enter_context(opened(place, xarray)) for place in (one, two))
+        if words := unlike(a, b):
+            return words
         paths = {node.path: None for tree in (a, b) for node in tree.subtree}
         for path in paths:
             here, there = (tree[path] if path in {node.path for node in tree.subtree} else None for tree in (a, b))
@@ -54,6 +56,17 @@ def compare(one: Path, two: Path, rtol: float = 0.0, atol: float = 0.0) -> list[
         for key in keys:
             told += attribute(key, a.attrs.get(key), b.attrs.get(key))
     return told
+
+
+def unlike(a: Any, b: Any) -> list[str]:
+    """Two datasets that are not of one experiment, in three lines; nothing where a comparison value by value makes sense."""
+    sizes = [dict(tree["status"].sizes) if "status" in tree else {} for tree in (a, b)]
+    names = [str(tree.attrs.get("name", "")) for tree in (a, b)]
+    if names[0] == names[1] or list(sizes[0]) == list(sizes[1]):
+        return []
+    about = (f"{' x '.join(f'{size} {dim}' for dim, size in one.items()) or 'one point'}" for one in sizes)
+    first, second = (f"{visible(name)}, {said}" for name, said in zip(names, about, strict=True))
+    return ["these are results of different experiments, and nothing in them is compared", f"first   {first}", f"second  {second}"]
 
 
 def attribute(key: str, x: Any, y: Any) -> list[str]:

@@ -90,6 +90,8 @@ def dimension(dim: Any) -> dict[str, Any]:
     rows = []
     for row in dim.coords:
         ends = {"first": plain(row.values[0]), "last": plain(row.values[-1])}
+        if all(isinstance(plain(value), int | float) for value in row.values):
+            ends |= {"least": plain(min(row.values)), "most": plain(max(row.values))}
         rows.append({"name": row.name, "config_path": row.config_path, "units": row.units, **ends})
     return {"name": dim.name, "size": dim.size, "coordinates": rows}
 
@@ -106,7 +108,8 @@ def said(found: dict[str, Any]) -> str:
     told[-1] += f", {found['present']} already in {found['out']}, {found['due']} to run"
     for dim in found["dimensions"]:
         for row in dim["coordinates"]:
-            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {ends(row['first'], row['last'])} {row['units']}".rstrip())
+            reach = ends(row.get("least", row["first"]), row.get("most", row["last"]))
+            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {reach} {row['units']}".rstrip())
     cost = found["estimate"]
     if refused := cost.get("refused"):
         return "\n".join([*told, refused, *said_groups(found["groups"])])
@@ -146,7 +149,7 @@ def said_groups(groups: list[dict[str, Any]]) -> list[str]:
 def ends(first: Any, last: Any) -> str:
     """The ends of an axis, in as many digits as tell them apart."""
     places = digits([value for value in (first, last) if isinstance(value, float)])
-    return " ... ".join(rounded(value, places) if isinstance(value, float) else str(value) for value in (first, last))
+    return " to ".join(rounded(value, places) if isinstance(value, float) else str(value) for value in (first, last))
 
 
 def short(value: Any) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.records.netcdf import summary
 from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan, skipped
 from mpm.sweep.lock import owner, said_owner
@@ -50,6 +51,7 @@ def status(out: Path) -> dict[str, Any]:
         "begun": sorted(begun.intersection(points.cases)),
         "owner": who,
         "dataset": str(store.dataset) if store.dataset.exists() else None,
+        "run": summary(store.out / "run.nc"),
     }
 
 
@@ -74,17 +76,19 @@ def said(found: dict[str, Any]) -> str:
     """The same in words."""
     words = [f"{found['out']}: {found['name']}, {found['points']} points: {told(found['counts'], found['warnings'])}"]
     for row in found["warned"]:
-        words.append(f"  {row['count']} x warning: {row['kind']}, as {row['example'] or row['run_id']}; {row['advice']}")
+        words.append(f"  {row['count']} x warning: {row['kind']}, as {row['example'] or 'the point'}; {row['advice']}")
     for failure in found["failures"]:
-        words.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or failure['run_id']}: {failure['error']}")
+        words.append(f"  {failure['count']} x {failure['reason']}, as {failure['example'] or 'the point'}: {failure['error']}")
         if failure["advice"]:
             words.append(f"      {failure['advice']}")
+    if (run := found["run"]) is not None:
+        words.append(f"  run.nc: one point, {run['error'] or STATUS[run['status']]}, {run['steps']} steps, {run['wall_time']:.3g} s")
     if found["stale"]:
         words.append(f"  {len(found['stale'])} from other source (--rerun stale runs them again)")
     if found["damaged"]:
         words.append(f"  {len(found['damaged'])} damaged (the next sweep runs them again)")
     if found["slowest"]:
-        words.append("  slowest: " + ", ".join(f"{row['point'] or row['run_id']} {row['seconds']:.3g} s" for row in found["slowest"]))
+        words.append("  slowest: " + ", ".join(f"{row['point'] or 'the point'} {row['seconds']:.3g} s" for row in found["slowest"]))
     if found["owner"] is not None:
         words.append(f"  being swept by {said_owner(found['owner'])}")
     if found["begun"]:

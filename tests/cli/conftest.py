@@ -42,6 +42,7 @@ def write(tmp_path):
 def mpm(tmp_path, monkeypatch, capsys):
     """Run a command in this process with the fake runner and a figure that is one byte: exit code, stdout, stderr."""
     plots = types.ModuleType("mpm.plots")
+    plots.__path__ = [str(Path(__file__).parents[2] / "mpm" / "plots")]
     plots.overview = lambda tree, path: path.write_bytes(b"p")
     plots.figures = lambda out, names, path, svg: [Path(path or out / f"{name}.{'svg' if svg else 'png'}") for name in names or ["overview"]]
     monkeypatch.setitem(sys.modules, "mpm.plots", plots)

@@ -12,7 +12,9 @@ FAKES = str(Path(__file__).parents[1] / "fakes")
 CODE = f"""
 import sys, types
 sys.path.insert(0, {FAKES!r})
+import mpm
 plots = types.ModuleType("mpm.plots")
+plots.__path__ = [mpm.__path__[0] + "/plots"]
 plots.overview = lambda tree, path: path.write_bytes(b"p")
 sys.modules["mpm.plots"] = plots
 from mpm.sweep import engine

@@ -1,0 +1,114 @@
+"""A swept dimension as an axis of a figure: where its values lie, and how they are called."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mpm.plots import words
+from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
+
+FEW = 64  # values that are told apart by their digits
+LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A swept dimension: where its values lie on a figure and how they are called. Infinity lies one step past the largest number."""
+
+    name: str
+    dim: str
+    values: np.ndarray
+    label: str
+    title: str
+    units: str
+    log: bool
+    category: bool
+    positions: np.ndarray = field(repr=False)
+
+    @classmethod
+    def of(cls, coordinate: Any, dim: str, log: bool | None = None) -> "Axis":
+        """The axis of a coordinate along `dim`; logarithmic where the values say so, unless told."""
+        name, raw, attrs = str(coordinate.name), coordinate.values, coordinate.attrs
+        path, units = attrs.get("config_path", ""), attrs.get("units", "1")
+        if raw.dtype.kind not in "fiu":
+            values = np.array([str(value) for value in raw], dtype=object)
+            label = words.compose(path or name, attrs.get("long_name", name), "")
+            return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
+        scale = words.scale(raw, units, words.is_temperature_path(path))
+        values = scale(raw)
+        log = log_spaced(values) if log is None else bool(log and (values > 0).all())
+        letter = words.symbol(name)
+        title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
+        return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return len(self.values)
+
+    def colours(self) -> list[Any]:
+        """A colour a value: in order for numbers, apart for kinds."""
+        if self.category:
+            return [OKABE_ITO[i % len(OKABE_ITO)] for i in range(self.size)]
+        order = ordered(self.size)
+        return [order[rank] for rank in self.ranks()]
+
+    def ranks(self) -> np.ndarray:
+        """Place of each value in ascending order."""
+        return np.argsort(np.argsort(self.positions, kind="stable"), kind="stable")
+
+    @cached_property
+    def texts(self) -> list[str]:
+        """Every value in words, those that differ in different ones; on long axes in three digits."""
+        return words.numbers(self.values) if self.size <= FEW else [words.number(value) for value in self.values]
+
+    def text(self, index: int) -> str:
+        """A value in words."""
+        return self.texts[index]
+
+    def says(self, index: int) -> str:
+        """`κ = 0.35 W/m/K`."""
+        return f"{words.symbol(self.name) or self.name.rsplit('.', 1)[-1]} = {self.text(index)} {self.units}".strip()
+
+    def apply(self, ax: Any) -> None:
+        """Scale, ticks and label of the horizontal axis."""
+        if self.log:
+            ax.set_xscale("log")
+        if self.size <= 9 or self.category or not np.isfinite(self.values).all():
+            chosen = spread(self.size, 12)
+            ax.set_xticks(self.positions[chosen], [self.text(i) for i in chosen])
+            ax.minorticks_off()
+        elif self.log:
+            plain_ticks(ax.xaxis)
+        ax.set_xlabel(self.label)
+
+
+def log_spaced(values: np.ndarray) -> bool:
+    """Whether values want a logarithmic axis: evenly spaced in the logarithm, or spanning a wide range."""
+    finite = np.unique(values[np.isfinite(values)])
+    if len(finite) < 2 or finite[0] <= 0:
+        return False
+    steps = np.diff(np.log(finite))
+    even = len(finite) > 2 and np.ptp(steps) < 0.02 * steps.mean() and finite[-1] / finite[0] > 3
+    return bool(even or finite[-1] / finite[0] > LOG_RATIO)
+
+
+def placed(values: np.ndarray, log: bool) -> np.ndarray:
+    """Positions on the axis; an infinite value lies one step past the largest finite one."""
+    finite = np.unique(values[np.isfinite(values)])
+    if len(finite) == len(np.unique(values)):
+        return values
+    if not len(finite):
+        return np.arange(len(values), dtype=float)
+    if log:
+        past = finite[-1] * (finite[-1] / finite[-2] if len(finite) > 1 else 10.0)
+    else:
+        past = finite[-1] + (finite[-1] - finite[-2] if len(finite) > 1 else 1.0)
+    return np.where(np.isfinite(values), values, past)
+
+
+def spread(size: int, most: int) -> list[int]:
+    """At most `most` indices, evenly spread, ends included."""
+    return list(range(size)) if size <= most else sorted({round(float(i)) for i in np.linspace(0, size - 1, most)})
