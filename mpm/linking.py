@@ -204,8 +204,11 @@ def mergeable(module):
 
 
 def same_flags(flags, other):
-    """TargetConfig.__eq__, asked a hundred thousand times a kernel: most often the same options were set to the same values."""
-    return (type(flags) is type(other) and flags._values == other._values) or stock["TargetConfig.__eq__"](flags, other)
+    """TargetConfig.__eq__, asked a hundred thousand times a kernel: of the options that either has set; all others have their default in both."""
+    if type(flags) is not type(other):
+        return stock["TargetConfig.__eq__"](flags, other)
+    one, two = flags._values, other._values
+    return one == two or all(getattr(flags, name) == getattr(other, name) for name in one.keys() | two.keys())
 
 
 def hash_of_flags(flags):

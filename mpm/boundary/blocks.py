@@ -56,7 +56,7 @@ def thin(shape, box, blocks):
     """Whether less than half of the nodes of a box lie in marked blocks."""
     (at, end), marked = span(shape, box), 0
     for b in range(at, end):
-        marked += blocks[b]
+        marked += int(blocks[b])  # a byte runs over in plain Python
     return 2 * BLOCK * marked < (box[0, 1] - box[0, 0]) * (box[1, 1] - box[1, 0]) * (box[2, 1] - box[2, 0])
 
 

@@ -67,20 +67,25 @@ def join(x, order, key, first, cells, parent, way, reach):
 
 
 @kernel
-def pieces(x, reach):
-    """Sets of particles x (N, D) that no chain of particles within `reach` [m] of one another joins."""
+def place(x, edge, far, key, steps):
+    """Number of each particle's cell, and what a cell further on in each direction has more."""
     N, D = x.shape
-    edge = reach / math.sqrt(D)
-    far = math.ceil(math.sqrt(D))  # cells that a reach spans
-    key = np.zeros(N, np.int64)
-    steps, stride = np.zeros(3, np.int64), 1
+    stride = 1
     for k in range(D - 1, -1, -1):
-        low, high = math.floor(x[:, k].min() / edge), math.floor(x[:, k].max() / edge)
+        low, high = x[0, k], x[0, k]
         for i in range(N):
-            key[i] += stride * (math.floor(x[i, k] / edge) - low)
+            low, high = min(low, x[i, k]), max(high, x[i, k])
+        least = math.floor(low / edge)
+        for i in range(N):
+            key[i] += stride * (math.floor(x[i, k] / edge) - least)
         steps[k] = stride
-        stride *= high - low + 1 + far  # room at the end: no cell is beside one of another row
-    order = sorting(key) if key.max() < DENSE * N else np.argsort(key)
+        stride *= math.floor(high / edge) - least + 1 + far  # room at the end: no cell is beside one of another row
+
+
+@kernel
+def count(x, key, order, steps, far, reach):
+    """Pieces of the particles in `order` of their cells."""
+    N, D = x.shape
     first = np.zeros(N + 1, np.int64)  # of each cell in `order`
     cells = 0
     for i in range(N):
@@ -100,3 +105,12 @@ def pieces(x, reach):
         left -= join(x, order, key, first, cells, parent, way, reach)
         offset += 1
     return left
+
+
+def pieces(x: np.ndarray, reach: float) -> int:
+    """Sets of particles x (N, D) that no chain of particles within `reach` [m] of one another joins."""
+    (N, D), far = x.shape, math.ceil(math.sqrt(x.shape[1]))  # cells that a reach spans
+    key, steps = np.zeros(N, np.int64), np.zeros(3, np.int64)
+    place(x, reach / math.sqrt(D), far, key, steps)
+    order = sorting(key) if key.max() < DENSE * N else np.argsort(key)  # which Numba would compile for seconds
+    return int(count(x, key, order, steps, far, reach))

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 
 import numpy as np
 import pytest
@@ -16,22 +17,30 @@ for line in sys.stdin:
     run = run_point(load(json.loads(line)), compare=False)
     series = {name: values.tolist() for name, values in run.series.items()}
     found = {"kind": run.outcome.kind, "message": run.outcome.message, "times": run.times.tolist(), "series": series, "facts": run.facts}
-    print(json.dumps(found, default=str))
+    print(json.dumps(found, default=str), flush=True)
 """
-
-
-def played(configs: list[dict]) -> list[dict]:
-    """Runs of many configs: outcome `kind`, `times`, `series` as arrays, `facts`."""
-    done = subprocess.run([sys.executable, "-c", PLAIN], input="\n".join(map(json.dumps, configs)), capture_output=True, text=True, check=False,
-                          env=os.environ | {"NUMBA_DISABLE_JIT": "1"})  # fmt: skip
-    assert done.returncode == 0, done.stderr[-3000:]
-    runs = [json.loads(line) for line in done.stdout.splitlines()]
-    for run in runs:
-        run["series"] = {name: np.array(values, dtype=float) for name, values in run["series"].items()}
-        run["times"] = np.array(run["times"])
-    return runs
 
 
 @pytest.fixture(scope="session")
 def plain():
-    return played
+    """Runs of many configs: outcome `kind`, `times`, `series` as arrays, `facts`. One child for all tests: to start it takes longer than most runs."""
+    with tempfile.TemporaryFile("w+") as said:
+        child = subprocess.Popen([sys.executable, "-c", PLAIN], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
+                                 env=os.environ | {"NUMBA_DISABLE_JIT": "1"})  # fmt: skip
+
+        def played(configs: list[dict]) -> list[dict]:
+            runs = []
+            for config in configs:
+                child.stdin.write(json.dumps(config) + "\n")
+                child.stdin.flush()
+                line = child.stdout.readline()
+                assert line, (said.seek(0), said.read()[-3000:])
+                run = json.loads(line)
+                run["series"] = {name: np.array(values, dtype=float) for name, values in run["series"].items()}
+                run["times"] = np.array(run["times"])
+                runs.append(run)
+            return runs
+
+        yield played
+        child.stdin.close()
+        assert child.wait() == 0
