@@ -2,7 +2,8 @@
 
 volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion at the temperatures reached explains; not where loads press
 heat      heat content and heat taken in disagree by more than HEAT of the larger, or of what the spread of temperatures holds
-energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads
+energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads. It shows in the answer: slump.yaml
+          loses 15 % at one of its points with `transfer: apic`, 10 % with affine FLIP, and spreads 0.109 and 0.123 mm
 thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
 edge      material comes within a cell of a side of the domain that `walls` does not name: a wall without friction stands there
@@ -21,7 +22,7 @@ from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
 
-VOLUME, HEAT, ENERGY, THIN = 0.1, 0.01, 0.2, 2.0
+VOLUME, HEAT, ENERGY, THIN = 0.1, 0.01, 0.1, 2.0
 SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
 
 

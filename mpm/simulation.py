@@ -16,7 +16,7 @@ from mpm.contact.insync import in_sync
 from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
 from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
-from mpm.integrate.bounds import bounds_of, keep_between
+from mpm.integrate.bounds import bounds_of, keep_between, needs_slopes
 from mpm.integrate.fracture_surface import tear_open
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import heat_implicit
@@ -220,8 +220,7 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, begun: float, dt: float, no
     substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
     clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
-    held = warm_energy(scene.space, scene.bodies)
-    met = scene.meeting
+    held, met = warm_energy(scene.space, scene.bodies), scene.meeting
     kinds = [scene.walls] * len(scene.bodies) if met is None else met.walls
     trio = zip(scene.bodies, scene.surroundings, kinds, strict=True)
     mirrors = np.stack([walls if one is None else one.mirrors(scene.space, body, walls) for body, one, walls in trio])
@@ -234,17 +233,18 @@ def warm_bodies(scene: Scene, clock: Clock, buffers, begun: float, dt: float, no
             return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
         clock.exchanged, clock.iterations, implicit = clock.exchanged + gained, clock.iterations + count, True
     for b, (body, walls, (lost, between)) in enumerate(zip(scene.bodies, mirrors, before, strict=True)):
+        back = scene.blend, 1.0 if between is not None and needs_slopes(scene, body) else scene.affine  # of the transfer to particles
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:
-            gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
+            gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, *back)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, body, buffers[3], walls, dt, substeps, scene.blend, scene.affine)
+            gained = heat_chebyshev(scene.space, body, buffers[3], walls, dt, substeps, *back)
         else:
-            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], walls, dt, substeps, scene.blend, scene.affine)
+            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], walls, dt, substeps, *back)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)
