@@ -159,3 +159,10 @@ def exchanging_area(body) -> float:
     owner = surface.owner[acting]
     normal = np.einsum("sji,sj->si", np.linalg.inv(surface.F.astype(float))[surface.row[owner]], surface.area[acting])
     return float(np.sum(body.particles.J[owner].astype(float) * np.linalg.norm(normal, axis=1)))  # in no order of BLAS
+
+
+def radius_holding(share: float, r, V) -> float:
+    """Within which `share` of the volume lies: half of a particle's counts at its own radius."""
+    order = np.argsort(r)
+    inside = np.cumsum(V[order]) - 0.5 * V[order]
+    return float(np.interp(share * np.sum(V), inside, r[order]))

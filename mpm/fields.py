@@ -1,4 +1,4 @@
-"""Fields of particles in snapshots: one function a name, of the scene, the body and where its particles were at the start.
+"""Fields of snapshots: of the grid, and of particles: one function a name, of the scene, the body and where its particles were at the start.
 
 Tensors have a column a component, in the order of mpm.state (mpm.records.variables.components).
 stress              Cauchy [Pa];   strain: elastic Hencky strain, 1/2 log of F_e F_e^T [-], the thermal part included
@@ -10,8 +10,12 @@ import math
 
 import numpy as np
 
-from mpm.diagnostics import strains, stresses, temperatures, thermal_pressure
+from mpm.boundary import extents
+from mpm.diagnostics import grid_shape, nodal, strains, stresses, temperatures, thermal_pressure
 from mpm.error import PLACES, kirchhoff
+from mpm.state import PAD, Axisymmetric
+
+AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
 
 def particle_fields(scene, origins) -> dict[str, np.ndarray]:
@@ -66,3 +70,34 @@ def principal_cauchy(scene, body) -> np.ndarray:
 def mises(sigma: np.ndarray) -> np.ndarray:
     """sqrt(3/2) |dev sigma|."""
     return math.sqrt(1.5) * np.linalg.norm(sigma - sigma.mean(axis=1, keepdims=True), axis=1)
+
+
+def grid_fields(scene) -> dict[str, np.ndarray]:
+    """Fields on the nodes inside the domain, last direction first ([z,] [y,] x), float32; NaN where no material is."""
+    shape = grid_shape(scene.space)
+    n = math.prod(extents(scene.space))
+
+    def gathered(weights):
+        nodes = np.zeros(n)
+        for body in scene.bodies:
+            nodal(scene.space, body.particles.x, np.ascontiguousarray(weights(body), dtype=float), nodes)
+        inner = nodes.reshape(shape)[tuple(slice(PAD, size - PAD) for size in shape)]
+        return inner.transpose(*range(len(shape) - 1, -1, -1))
+
+    mass = gathered(lambda body: body.particles.m)
+    volume = gathered(lambda body: body.particles.V0 * body.particles.J)
+    fields = {}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if "density" in scene.watch.grid:
+            fields["density"] = (mass / volume).astype(np.float32)
+        if "velocity" in scene.watch.grid:
+            for k, axis in enumerate(axis_names(scene.space)):
+                fields[f"velocity_{axis}"] = (gathered(lambda body, k=k: body.particles.m * body.particles.v[:, k]) / mass).astype(np.float32)
+        if "temperature" in scene.watch.grid:
+            heat = gathered(lambda body: body.particles.m * (temperatures(body)))
+            fields["temperature"] = (heat / mass).astype(np.float32)
+    return fields
+
+
+def axis_names(space) -> tuple[str, ...]:
+    return ("r", "z") if isinstance(space, Axisymmetric) else AXES[len(grid_shape(space))]

@@ -11,10 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from mpm.boundary import extents
-from mpm.diagnostics import capacities, exchanging_area, grid_shape, heat_since, kinetic, nodal, stored, strains, stresses, temperatures, thermal_pressure
+from mpm.diagnostics import (
+    capacities,
+    exchanging_area,
+    grid_shape,
+    heat_since,
+    kinetic,
+    radius_holding,
+    stored,
+    strains,
+    stresses,
+    temperatures,
+    thermal_pressure,
+)
 from mpm.error import Errors
-from mpm.fields import cauchy, particle_fields
+from mpm.fields import axis_names, cauchy, grid_fields, particle_fields
 from mpm.follow import moved, nearest, renumbered, sampled
 from mpm.memory import Frames, rows
 from mpm.outcome import Outcome
@@ -22,8 +33,6 @@ from mpm.records.variables import parts
 from mpm.state import PAD, Axisymmetric, Run, Thermal
 from mpm.total import reference as moving
 from mpm.total.heat import Warmth
-
-AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
 
 @dataclass
@@ -59,17 +68,6 @@ def stops(times: np.ndarray, snapshots: np.ndarray) -> list[tuple[float, bool]]:
     """Times that a run comes to, and whether its series are told there."""
     every = merged(times, snapshots)
     return list(zip(every.tolist(), near(every, times).tolist(), strict=True))
-
-
-def radius_holding(share: float, r, V) -> float:
-    """Within which `share` of the volume lies: half of a particle's counts at its own radius."""
-    order = np.argsort(r)
-    inside = np.cumsum(V[order]) - 0.5 * V[order]
-    return float(np.interp(share * np.sum(V), inside, r[order]))
-
-
-def axis_names(space) -> tuple[str, ...]:
-    return ("r", "z") if isinstance(space, Axisymmetric) else AXES[len(grid_shape(space))]
 
 
 class Recorder:
@@ -124,7 +122,8 @@ class Recorder:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
-        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *wrong.items()):
+        met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag) if scene.meeting is not None and scene.implicit is None else ()
+        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *wrong.items(), *met):
             self.series.setdefault(name, []).append(float(value))
         self.frame(scene, clock)
 
@@ -198,8 +197,9 @@ class Recorder:
         total = motion + elastic - np.sum(m[:, None] * x * scene.gravity)
         yield "energy_total", total
         yield "dissipation_total", clock.dissipated
-        yield "work_loads", clock.worked
-        self.gone = clock.worked + clock.swelled + clock.softened - clock.dissipated - (total - self.series.get("energy_total", [total])[0])
+        work = clock.worked + (scene.meeting.work if scene.meeting is not None else 0.0)
+        yield "work_loads", work
+        self.gone = work + clock.swelled + clock.softened - clock.dissipated - (total - self.series.get("energy_total", [total])[0])
         yield "dissipation_transfer", self.gone
 
     def thermal(self, scene, clock):
@@ -271,30 +271,3 @@ class Recorder:
             if scene.watch.grid:
                 run.axes = {name: np.arange(n - 2 * PAD) * scene.space.h for name, n in zip(axis_names(scene.space), grid_shape(scene.space), strict=True)}
         return run
-
-
-def grid_fields(scene) -> dict[str, np.ndarray]:
-    """Fields on the nodes inside the domain, last direction first ([z,] [y,] x), float32; NaN where no material is."""
-    shape = grid_shape(scene.space)
-    n = math.prod(extents(scene.space))
-
-    def gathered(weights):
-        nodes = np.zeros(n)
-        for body in scene.bodies:
-            nodal(scene.space, body.particles.x, np.ascontiguousarray(weights(body), dtype=float), nodes)
-        inner = nodes.reshape(shape)[tuple(slice(PAD, size - PAD) for size in shape)]
-        return inner.transpose(*range(len(shape) - 1, -1, -1))
-
-    mass = gathered(lambda body: body.particles.m)
-    volume = gathered(lambda body: body.particles.V0 * body.particles.J)
-    fields = {}
-    with np.errstate(invalid="ignore", divide="ignore"):
-        if "density" in scene.watch.grid:
-            fields["density"] = (mass / volume).astype(np.float32)
-        if "velocity" in scene.watch.grid:
-            for k, axis in enumerate(axis_names(scene.space)):
-                fields[f"velocity_{axis}"] = (gathered(lambda body, k=k: body.particles.m * body.particles.v[:, k]) / mass).astype(np.float32)
-        if "temperature" in scene.watch.grid:
-            heat = gathered(lambda body: body.particles.m * (temperatures(body)))
-            fields["temperature"] = (heat / mass).astype(np.float32)
-    return fields

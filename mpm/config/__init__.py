@@ -28,10 +28,12 @@ Further files
     rules_point       rules for grid.dimension 0, the material point
     rules_scene       rules for bodies, materials, surfaces, walls and grid
     rules_size        rules for sizes that no machine takes
+    rules_tools       rules for tools, and for observables of what bodies meet
     rules_stability   rules of `stability:`
     scalars           A plain scalar of YAML to a value of Python, by the core schema of YAML 1.2
     stability         A map of failures
     tabs              tabs where YAML 1.2 allows them (its sections 6.1 to 6.3), which ruamel.yaml refuses
+    tools             rigid bodies that move as they are told
     variation         what a sweep section comes to
 """
 

@@ -14,6 +14,7 @@ from mpm.config import rules_output as output
 from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
 from mpm.config import rules_size as size
+from mpm.config import rules_tools as tools
 from mpm.config.explain import Finding
 from mpm.config.partial import Unknown
 from mpm.config.problems import MOST_FINDINGS
@@ -83,6 +84,9 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.load, each("loads")),
     (scene.contact, each("contacts")),
     (scene.walls, each("walls")),
+    (tools.tool, each("tools")),
+    (tools.motion, each("tools")),
+    (tools.met, output.observables),
     (scene.mechanics, once),
     (scene.gravity, once),
     (scene.scaling, once),

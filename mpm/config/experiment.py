@@ -25,6 +25,7 @@ from mpm.config.parameters import Named
 from mpm.config.quantities import Acceleration
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
+from mpm.config.tools import Tool
 from mpm.text import storable
 
 PHYSICS_VERSION = 3
@@ -41,6 +42,7 @@ class Experiment(Model):
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
     contacts: tuple[Pair, ...] = doc((), description="pairs of bodies that meet; those not named slide without friction and conduct without resistance")
+    tools: dict[str, Tool] = doc({}, description="rigid bodies that move as they are told, by name")
     gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
     loads: tuple[Load, ...] = doc((), description="tractions on bodies that move, and drag")
     loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")

@@ -12,7 +12,7 @@ from mpm.config.shapes_fit import bounds, home, misfits
 MOST_SAMPLES, MOST_NAMED = 10**6, 4
 OF_MATTER = ("mass.total", "volume.total")  # known of bodies that do not move too
 OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocity", "J", "radius", "area", "pressure", "strain", "stress", "kirchhoff",
-             "displacement", "mass", "volume", "work")  # fmt: skip
+             "displacement", "mass", "volume", "work", "force", "torque")  # fmt: skip
 
 
 def clock(experiment: Any) -> Iterator[Finding]:
@@ -111,7 +111,7 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
 
 
 def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) -> Iterator[Finding]:
-    from mpm.records.variables import OBSERVABLES, fits, observable_exists, parts, probed, threshold
+    from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, threshold
 
     path = ("output", "observables", index)
     if not observable_exists(name):
@@ -121,6 +121,10 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
             "time_to.<probe>.<value>_K",
             "displacement.<probe>_<direction>",
             "stress.<probe>_<component>",
+            "force.<wall, tool or pair>_<direction>",
+            "torque.<wall, tool or pair>_<direction>",
+            "area.<wall, tool or pair>",
+            "heat.<pair>",
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
@@ -143,7 +147,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) 
             given=name,
         )
     family = name.split(".", maxsplit=1)[0]
-    if family in ("temperature", "heat", "time_to", "area") and not hot:
+    if family in ("temperature", "heat", "time_to", "area") and not hot and not (family == "area" and met(name)):
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
     if family in OF_MOTION and not moving and (name not in OF_MATTER or experiment.grid.dimension == 0):
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)

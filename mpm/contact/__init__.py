@@ -5,6 +5,7 @@
 
 skin      where the pieces of a surface are now             spots     nodes and weights of a piece
 find      which of them are near what, and the gap g        weights   W: linear-exact, and balanced with the stress of the particles
+tools     rigid bodies that move as they are told            books     forces, torques, areas and heat of what meets, for the records
 solve     the impulses, by projected Gauss-Seidel           step      the mechanical step of scenes in which something is near (integrate/explicit.py elsewhere)
 meeting   what of it outlasts a step, and when it is needed
 
@@ -14,8 +15,11 @@ Fails when   a contact is narrower than a cell (force right, pressure not); a fl
              for it, between bodies nothing does; a body folds on to itself; sheets are thinner than a cell
 
 Further files
-    block     the arrays that a run works on, and one block of its steps by whichever kernel it needs
-    conduct   one implicit heat step of bodies that touch
-    insync    velocities at the time of the positions
-    links     where heat passes between bodies
+    block      the arrays that a run works on, and one block of its steps by whichever kernel it needs
+    conduct    one implicit heat step of bodies that touch
+    distance   signed distances of tools and their gradients
+    drive      how tools move as they are told
+    found      the contacts of one step
+    insync     velocities at the time of the positions
+    links      where heat passes between bodies
 """

@@ -6,6 +6,7 @@ import numpy as np
 
 from mpm.boundary import directions, extents
 from mpm.boundary.blocks import new_blocks
+from mpm.contact.step import Pace
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
@@ -34,7 +35,8 @@ def work_arrays(scene):
 def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     """One block of `steps` steps of dt; clock.reports tells of it. Not ok where a meeting was not foreseen."""
     speed, g, met = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity)), scene.meeting
-    clock.touching = met is not None and met.near(AHEAD * (speed + g * dt * steps) * dt * steps)
+    tool = 0.0 if met is None else met.pace(clock.time, dt * steps)
+    clock.touching = met is not None and met.near(AHEAD * max(speed + g * dt * steps, tool) * dt * steps, clock.time)
     if clock.touching and met.unforeseen is not None:
         return outcome(met.unforeseen[0], time=clock.time * scene.scale, step=clock.steps, detail=f"({scene.names[met.unforeseen[1]]})")
     scene.order.refresh()
@@ -43,7 +45,7 @@ def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:
-        met.left -= travel
+        met.left -= max(travel, tool * dt * steps)
     return outcome(COMPLETED)
 
 
@@ -54,7 +56,8 @@ def push(scene, clock, buffers, dt: float, kick: float, steps: int, ahead: float
     reports[:] = 0.0
     reports[:, PARTICLE] = -1
     if clock.touching:
-        scene.meeting.advance(scene, nodes, force, boxes, blocks, dt, kick, ahead, steps, clock.steps, WAVE * scene.space.h / wave, reports)
+        pace = Pace(dt, kick, ahead, steps, clock.steps, WAVE * scene.space.h / wave)
+        scene.meeting.advance(scene, buffers, pace, clock.time, reports)
     elif scene.order.sliced:
         return advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, clock.steps, reports)
     else:

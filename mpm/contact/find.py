@@ -7,45 +7,19 @@ body B    over the faces t of B within REACH that look at piece s (n_t . n_s < F
           none where that lies beside t, past the edge of B
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions, extents
+from mpm.contact.found import BODY, CORNER, FACING, REACH, around, new_contacts, put
 from mpm.contact.skin import POINT
+from mpm.contact.tools import find_tools
 from mpm.jit import kernel, role
 from mpm.state import PAD, NoExchange, Surface
 
-NEAR, REACH = 0.6, 1.25  # cells: gaps that a step can close; how far faces of another body are looked for
-FACING, CORNER = -0.5, -0.2  # cosines
-BODY = 6  # against: 2 axis + side of a wall; BODY + b for body b
-
-
-class Contacts(NamedTuple):
-    """Room for C contacts of a piece of A with a wall or with B; sides 0 (A) and 1 (B)."""
-
-    piece: np.ndarray  # (C,) of A; -1: a particle without a piece
-    against: np.ndarray  # (C,)
-    gap: np.ndarray  # (C,) [m]
-    mu: np.ndarray  # (C,) friction; inf: no sliding
-    normal: np.ndarray  # (C, D) out of the obstacle
-    body: np.ndarray  # (C, 2); -1 for a wall
-    owner: np.ndarray  # (C, 2) particle
-    home: np.ndarray  # (C, 2, D) of it [m]
-    point: np.ndarray  # (C, 2, D) place of the contact [m]
-    balanced: np.ndarray  # (C, 2) whether the weights are balanced with the stress: faces that look along the normal
-
 
 @kernel
-def new_contacts(C, D):
-    """Room for C contacts."""
-    return Contacts(np.empty(C, np.int64), np.empty(C, np.int64), np.empty(C), np.empty(C), np.empty((C, D)), np.empty((C, 2), np.int64),
-                    np.empty((C, 2), np.int64), np.empty((C, 2, D)), np.empty((C, 2, D)), np.empty((C, 2), np.uint8))  # fmt: skip
-
-
-@kernel
-def find_all(space, bodies, skin, stops, pairs, room, within):
+def find_all(space, bodies, skin, stops, pairs, tools, room, within):
     """(contacts, how many). stops (B, 3, 2), pairs (B, B): friction, negative where nothing is met; room (1,): how many to make room for, remembered."""
     D = directions(space)
     while True:
@@ -57,6 +31,7 @@ def find_all(space, bodies, skin, stops, pairs, room, within):
             b += 1
         if pairs.max() >= 0.0:
             count = find_pairs(space, skin, pairs, found, count, within)
+        count = find_tools(tools, space, bodies, skin, found, count, within)
         if count <= room[0]:
             return found, count
         room[0] = count + count // 2
@@ -66,14 +41,6 @@ def find_all(space, bodies, skin, stops, pairs, room, within):
 def before(space, stop_axis, side, x):
     """How far a place stands before a wall."""
     return x if side == 0 else (extents(space)[stop_axis] - 1 - 2 * PAD) * space.h - x
-
-
-@kernel
-def put(found, i, piece, against, gap, mu, b, owner, home, point, balanced):
-    """Write side A of contact i, where there is room."""
-    found.piece[i], found.against[i], found.gap[i], found.mu[i] = piece, against, gap, mu
-    found.body[i, 0], found.body[i, 1], found.owner[i, 0], found.balanced[i, 0], found.balanced[i, 1] = b, -1, owner, balanced, 0
-    found.home[i, 0], found.point[i, 0] = home, point
 
 
 @kernel
@@ -93,8 +60,8 @@ def find_walls(space, skin, stops, found, within):
                     continue
                 if count < len(found.gap):
                     out = 1.0 if side == 0 else -1.0
-                    faces = skin.area[s] > 2 * POINT * space.h ** (D - 1) and skin.normal[s, axis] * out < FACING
-                    put(found, count, s, 2 * axis + side, gap, stops[b, axis, side], b, skin.owner[s], skin.home[s], skin.x[s], faces)
+                    looks = skin.area[s] > 2 * POINT * space.h ** (D - 1) and skin.normal[s, axis] * out < FACING
+                    put(found, count, s, 2 * axis + side, gap, stops[b, axis, side], b, skin.owner[s], skin.home[s], skin.x[s], looks)
                     found.normal[count] = 0.0
                     found.normal[count, axis] = out
                 count += 1
@@ -123,7 +90,7 @@ def find_lone_surface(surface, space, body, b, stops, found, count):
                 far = before(space, axis, side, x[p, axis])
                 if far >= 0.5 * space.h or surface.row[p] >= 0:
                     continue
-                gap = far - 0.5 * (body.particles.V0[p] * body.particles.J[p]) ** (1.0 / D)
+                gap = far - 0.5 * (body.particles.V0[p] * body.particles.J[p] / around(space, x[p, 0])) ** (1.0 / D)
                 if gap >= 0.1 * space.h:
                     continue
                 if count < len(found.gap):
@@ -216,7 +183,7 @@ def find_pairs(space, skin, pairs, found, count, within):
                 along += (point[a] - skin.x[t, a]) * skin.normal[t, a]
             for a in range(D):
                 beside += (point[a] - skin.x[t, a] - along * skin.normal[t, a]) ** 2
-            wide = 0.55 * skin.area[t] if D == 2 else 0.78 * skin.area[t] ** 0.5
+            wide = 0.55 * skin.area[t] / around(space, skin.x[t, 0]) if D == 2 else 0.78 * skin.area[t] ** 0.5
             if gap >= within * h or (D > 1 and beside > wide * wide):
                 continue
             if count < len(found.gap):

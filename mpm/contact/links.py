@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.boundary import directions, extents
-from mpm.contact.find import BODY, NEAR, find_all
+from mpm.contact.find import find_all
+from mpm.contact.found import BODY, NEAR
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.spots import seen
+from mpm.contact.tools import NoTools
 from mpm.integrate.heat_matrix import nodes_of
 from mpm.jit import kernel
 
@@ -34,7 +36,7 @@ def find_links(space, bodies, touching, walls, conductance, dt):
     D, skin = directions(space), new_skin(directions(space), touching.first)
     M = seen(space) ** D
     lay_skins(space, bodies, skin)
-    contacts, count = find_all(space, bodies, skin, np.full_like(touching.stops, -1.0), conductance - 1e-300, touching.room, NEAR)
+    contacts, count = find_all(space, bodies, skin, np.full_like(touching.stops, -1.0), conductance - 1e-300, NoTools(), touching.room, NEAR)
     links = Links(np.empty((count, 2), np.int64), np.empty(count), np.empty((count, 2, M), np.int64), np.empty((count, 2, M)))
     L, at, w, g, d = 0, np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros((D, M))
     shape = extents(space)

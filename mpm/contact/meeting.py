@@ -7,10 +7,15 @@ import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.blocks import new_blocks
+from mpm.contact import books
 from mpm.contact.conduct import FIELDS, conduct_together
+from mpm.contact.drive import Drive
+from mpm.contact.found import BODY
 from mpm.contact.links import PERFECT, find_links
+from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
-from mpm.contact.step import Touching, advance_touching
+from mpm.contact.step import Grids, Pace, Touching, advance_touching
+from mpm.contact.tools import NoTools
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.lanes import aligned
@@ -19,6 +24,7 @@ from mpm.state import PAD, Surface, Thermal
 from mpm.transfer import columns, wants_change
 
 SLACK = 0.15  # cells beyond which nothing acts: gaps closer than SURE are in the sweeps
+KEPT = ("warm", "touched", "pushed", "turned", "spread", "deepest", "worked")  # of Touching, by a run that goes on
 
 
 @dataclass
@@ -32,9 +38,14 @@ class Meeting:
     pairs: np.ndarray  # (B, B)
     fields: np.ndarray  # (B,)
     links: np.ndarray  # (B, B) conductance of pairs [W/(m2 K)], inf: none in the way, 0: no heat
+    names: tuple[str, ...] = ()
+    sides: tuple[str, ...] = ()  # names of walls by number
+    drive: Drive | None = None
     touching: Touching = field(init=False)
+    passed: np.ndarray = field(init=False)  # (B, B) heat that a body took in from each other since the start [J]
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
+    told: float = field(default=0.0, init=False)  # up to when impulses were recorded [s]
     left: float = field(default=-1.0, init=False)  # how far anything may still move before something can be near [m]
     buffers: tuple | None = field(default=None, init=False)
     scratch: np.ndarray | None = field(default=None, init=False)
@@ -42,30 +53,54 @@ class Meeting:
     def __post_init__(self):
         B, D, n = len(self.bodies), directions(self.space), math.prod(extents(self.space))
         first = np.cumsum([0, *(len(body.surface.owner) if isinstance(body.surface, Surface) else 0 for body in self.bodies)])
-        met = np.concatenate([(self.stops >= 0).any(axis=0).ravel(), (self.pairs >= 0).any(axis=0)])
+        T = len(self.tool_names)
+        met = np.concatenate([(self.stops >= 0).any(axis=0).ravel(), (self.pairs >= 0).any(axis=0), np.ones(T, bool)])
         rows = np.where(met, np.cumsum(met) - 1, 0)
         R, P, F = max(int(met.sum()), 1), int(first[-1]), int(self.fields.max()) + 1
         walls = np.stack([self.walls[self.fields == f].min(axis=0) for f in range(F)])  # a group is a mirror's where one of it is
-        self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, 6 + B, D)),
-                                 np.zeros(1), np.full(n, -1), np.array([P // 4 + 64]))  # fmt: skip
+        tools, K = NoTools() if self.drive is None else self.drive.tools, BODY + B + T
+        self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
+                                 np.zeros((B, K, 3)), np.zeros((B, K)), np.zeros(1), np.zeros(1), np.full(n, -1),
+                                 np.array([P // 4 + 64]))  # fmt: skip
+        self.passed = np.zeros((B, B))
+
+    @property
+    def tool_names(self) -> tuple[str, ...]:
+        return () if self.drive is None else tuple(one.name for one in self.drive.told)
 
     def memory(self) -> dict:
         """What a run that goes on needs (mpm.memory)."""
-        kept = ("warm", "touched", "pushed", "deepest")
-        return {name: getattr(self.touching, name) for name in kept} | {"left": self.left}
+        return {name: getattr(self.touching, name) for name in KEPT} | {"left": self.left, "told": self.told, "passed": self.passed} | self.free()
+
+    def free(self) -> dict:
+        """What forces have done to tools."""
+        return {} if self.drive is None else {"v": self.drive.tools.v, "shift": self.drive.tools.shift}
 
     def recall(self, found: dict) -> None:
         """As it was when `memory` was kept."""
-        self.left = found["left"]
-        for name in ("warm", "touched", "pushed", "deepest"):
+        self.left, self.told = found["left"], found["told"]
+        for name in KEPT:
             getattr(self.touching, name)[...] = found[name]
+        self.passed[...] = found["passed"]
+        for name, array in self.free().items():
+            array[...] = found[name]
 
-    def touched(self, b: int, side: int) -> np.ndarray:
-        """Time in touch of the pieces of body b with wall `side` (2 axis + side): a view (pieces,) [s]."""
+    def touched(self, b: int, against: int) -> np.ndarray:
+        """Time in touch of the pieces of body b with an obstacle (mpm.contact.found): a view (pieces,) [s]."""
         first = self.touching.first
-        if self.stops[b, side // 2, side % 2] < 0:
+        if against < BODY and self.stops[b, against // 2, against % 2] < 0:
             return np.zeros(first[b + 1] - first[b])
-        return self.touching.touched[first[b] : first[b + 1], self.touching.rows[side]]
+        return self.touching.touched[first[b] : first[b + 1], self.touching.rows[against]]
+
+    @property
+    def work(self) -> float:
+        """Of tools on bodies since the start [J]."""
+        return float(self.touching.worked[0])
+
+    def series(self, axes: tuple[str, ...], now: float):
+        """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted [s]."""
+        since, self.told = now - self.told, now
+        return books.series(self, axes, since)
 
     def warmed(self) -> None:
         """A heat step is over."""
@@ -85,15 +120,21 @@ class Meeting:
         if self.scratch is None:
             self.scratch = np.zeros((len(self.bodies), FIELDS, math.prod(extents(self.space))))
         which, method = np.unique(links.body), (scene.heat.order, scene.heat.tolerance, scene.blend, scene.affine)
-        return which, conduct_together(self.space, scene.bodies, which, self.scratch, walls, links, dt, *method)
+        done = conduct_together(self.space, scene.bodies, which, self.scratch, walls, links, dt, *method)
+        self.passed += books.passed(links, done[1], len(self.bodies))
+        return which, done
 
-    def near(self, travel: float) -> bool:
-        """Whether anything may be near while no particle moves farther than `travel` [m]."""
+    def pace(self, time: float, span: float) -> float:
+        """The fastest that a tool may go from `time` on for `span` [m/s]."""
+        return 0.0 if self.drive is None else self.drive.pace(time, span)
+
+    def near(self, travel: float, time: float) -> bool:
+        """Whether anything may be near while no particle and no tool moves farther than `travel` [m] from `time` on."""
         if self.left < travel:
-            self.left, self.unforeseen = self.distance()
+            self.left, self.unforeseen = self.distance(time)
         return self.left < travel
 
-    def distance(self) -> tuple[float, tuple[int, int] | None]:
+    def distance(self, time: float) -> tuple[float, tuple[int, int] | None]:
         """How far a particle may move before anything acts [m]; (UNPREPARED, body) where a body that has no pieces to meet by is that near.
 
         A wall acts on pieces, a mirror that another body stands at on nodes, other bodies on nodes.
@@ -108,6 +149,7 @@ class Meeting:
                 found.append(far - margin)
                 if far < margin and self.stops[b, axis, side] < 0 and self.touching.walls[self.fields[b], axis, side] == CONTACT:
                     unforeseen = UNPREPARED, b
+            found += [0.5 * (self.drive.gap(t, time, low, high) - skin_depth(self.bodies[b], h) - SURE * h) for t in range(len(self.tool_names))]
             for c in range(b):
                 if self.fields[b] != self.fields[c]:
                     apart = float(np.max(np.maximum(low - boxes[c][1], boxes[c][0] - high)))
@@ -116,15 +158,13 @@ class Meeting:
                         unforeseen = UNPREPARED, b
         return min(found), unforeseen
 
-    def advance(self, scene, nodes, force, boxes, blocks, dt: float, kick: float, ahead: float, steps: int, begun: int, sound: float,
-                reports) -> None:  # fmt: skip
-        """One block of steps in which something may be near."""
-        if len(self.touching.walls) > 1:
-            nodes, force, boxes, blocks = self.apart(scene)
-        else:
-            nodes, force, boxes, blocks = nodes[None], force[None], boxes[None], blocks[None]
-        advance_touching(scene.space, scene.gradient, scene.scheme, scene.bodies, self.touching, nodes, force, boxes, blocks, scene.gravity, dt, kick,
-                         ahead, steps, begun, sound, reports)  # fmt: skip
+    def advance(self, scene, buffers, pace: Pace, time: float, reports) -> None:
+        """One block of steps from `time` on in which something may be near; buffers: nodes, force, (boxes, blocks)."""
+        nodes, force, (boxes, blocks), *_ = buffers
+        grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (nodes[None], force[None], boxes[None], blocks[None])))
+        if self.drive is not None:
+            self.drive.lay(time, pace.ahead, pace.steps)
+        advance_touching(scene.space, scene.gradient, scene.scheme, scene.bodies, self.touching, grids, scene.gravity, pace, reports)
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

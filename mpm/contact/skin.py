@@ -7,7 +7,7 @@ from numba import literal_unroll
 
 from mpm.boundary import directions
 from mpm.jit import kernel, role
-from mpm.state import NoExchange, Surface
+from mpm.state import Axisymmetric, Line, NoExchange, Plane, Surface, Volume
 
 POINT = 1e-9  # of a face of a cell: the area of a piece that is a corner
 
@@ -86,3 +86,21 @@ def lay_skin_surface(surface, space, body, skin, first):
         skin.area[k] = size
         for a in range(D):
             skin.normal[k, a] /= max(size, 1e-300)
+
+
+@role
+def hoop(space):
+    """Whether the first direction is a radius."""
+    raise TypeError(f"no directions of {type(space).__name__}")
+
+
+@hoop.register(Line)
+@hoop.register(Plane)
+@hoop.register(Volume)
+def hoop_volume_or_plane_or_line(space):
+    return False
+
+
+@hoop.register(Axisymmetric)
+def hoop_axisymmetric(space):
+    return True

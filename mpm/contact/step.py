@@ -2,16 +2,18 @@
 the nodes' update and the gather. Everything that goes over particles is the same code.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import empty, unfold
-from mpm.contact.find import NEAR, find_all
+from mpm.contact.find import find_all
+from mpm.contact.found import BODY, NEAR
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import press
+from mpm.contact.solve import Problem, press
+from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import weigh
 from mpm.integrate.explicit import clean, pass_body, update
 from mpm.integrate.fbar import any_averages, average_all
@@ -24,28 +26,50 @@ TOUCH = 0.05  # cells: a gap below it touches
 
 
 class Touching(NamedTuple):
-    """Who meets what, and what outlasts a step. B bodies, F fields, P pieces, R obstacles that are met."""
+    """Who meets what, and what outlasts a step. B bodies, T tools, F fields, P pieces, R obstacles that are met; K = 6 + B + T."""
 
     first: np.ndarray  # (B + 1,) first piece of each body
     fields: np.ndarray  # (B,) velocity field of each body
     walls: np.ndarray  # (F, 3, 2) kinds of walls for each field: mirrors for those that started at them
     stops: np.ndarray  # (B, 3, 2) friction of the walls that a body meets, negative for others
     pairs: np.ndarray  # (B, B) friction of the bodies that a body meets, negative for others
-    rows: np.ndarray  # (6 + B,) where an obstacle is kept below
+    tools: Any  # Tools or NoTools
+    rows: np.ndarray  # (K,) where an obstacle is kept below
     warm: np.ndarray  # (P, R, D) impulses of the last step [kg m/s]
     touched: np.ndarray  # (P, R) time in touch since the last heat step [s]
-    pushed: np.ndarray  # (B, 6 + B, D) impulse on each body since the last record [kg m/s]
+    pushed: np.ndarray  # (B, K, D) impulse on each body since the last record [kg m/s]
+    turned: np.ndarray  # (B, K, 3) its moment about a tool's centre, or the origin of coordinates [kg m2/s]
+    spread: np.ndarray  # (B, K) area in touch times time since the last record [m2 s]
     deepest: np.ndarray  # (1,) largest overlap since the last record [m]
+    worked: np.ndarray  # (1,) work of tools on bodies since the start [J]
     number: np.ndarray  # (nodes,) scratch, -1
     room: np.ndarray  # (1,) contacts to make room for
 
 
-@kernel
-def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, boxes, blocks, gravity, dt, kick, ahead, steps, begun, sound, reports):
-    """As explicit.advance with nodes and force (F, 2, n, columns), boxes (F, 2, 3, 2), blocks (F, 2, marks); sound: speed of the fastest wave [m/s].
+class Grids(NamedTuple):
+    """Nodes of every field."""
 
-    ahead [s]: contacts are such that nothing overlaps by then; dt, but where velocities are only looked at (insync.py).
-    """
+    nodes: np.ndarray  # (F, 2, n, columns)
+    force: np.ndarray  # (F, 2, n or 0, columns)
+    boxes: np.ndarray  # (F, 2, 3, 2)
+    blocks: np.ndarray  # (F, 2, marks)
+
+
+class Pace(NamedTuple):
+    """A block of steps."""
+
+    dt: float
+    kick: float  # how long the impulse of the first acts [s] (insync.py)
+    ahead: float  # contacts are such that nothing overlaps by then; dt, but where velocities are only looked at (insync.py) [s]
+    steps: int
+    begun: int
+    sound: float  # speed of the fastest wave [m/s]
+
+
+@kernel
+def advance_touching(space, gradient, scheme, bodies, touching, grids, gravity, pace, reports):
+    """As explicit.advance with the nodes of every field."""
+    nodes, force, boxes, blocks, dt, steps = grids.nodes, grids.force, grids.boxes, grids.blocks, pace.dt, pace.steps
     chunk = new_chunk(gravity.shape[0], nodes[0], uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
     change, shape, fields = np.zeros_like(chunk.v), extents(space), len(touching.walls)
     skin = new_skin(gravity.shape[0], touching.first)
@@ -54,21 +78,23 @@ def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, bo
         empty(shape, boxes[f, 1])
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2
+        acts = pace.kick if step == 0 else dt
         if not opening:
             for f in range(fields):
-                acts = kick if step == 0 else dt
                 update(space, scheme, nodes[f, now], force[f, now], boxes[f, now], blocks[f, now], touching.walls[f], gravity, acts)
             here, there, walls = nodes[0], force[0], touching.walls[0]
             if fields == 1:
                 sharpen(scheme, space, gradient, bodies, chunk, here[now], there[now], here[1 - now], there[1 - now], boxes[0, now], blocks[0, now], walls)
-            meet(space, gradient, scheme, bodies, touching, skin, nodes, force, boxes, blocks, now, ahead, sound)
+            place_tools(touching.tools, step, pace.ahead, acts)
+            meet(space, gradient, scheme, bodies, touching, skin, grids, now, pace)
+            move_tools(touching.tools, dt)
             if fields == 1:
                 average_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt)
                 compress_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt, reports)
-        ok, b, push = True, 0, kick if opening else dt
+        ok, b, push = True, 0, pace.kick if opening else dt
         for body in literal_unroll(bodies):
             f = touching.fields[b]
-            ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes[f], force[f], boxes[f], blocks[f], True, now, push, step, begun,
+            ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes[f], force[f], boxes[f], blocks[f], True, now, push, step, pace.begun,
                                   opening, last, reports[b])  # fmt: skip
             b += 1
         if not ok:
@@ -79,32 +105,59 @@ def advance_touching(space, gradient, scheme, bodies, touching, nodes, force, bo
 
 
 @kernel
-def meet(space, gradient, scheme, bodies, touching, skin, nodes, force, boxes, blocks, now, dt, sound):
+def meet(space, gradient, scheme, bodies, touching, skin, grids, now, pace):
     """One step's contacts, on the nodes of buffer `now`; and the books of it."""
     lay_skins(space, bodies, skin)
-    contacts, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.room, NEAR)
+    contacts, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
     if count == 0:
         touching.warm[:] = 0.0
         return
-    at, coef = weigh(space, gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, now, touching.number)
-    impulse = press(space, contacts, count, at, coef, touching.fields, nodes, force, now, dt, sound, touching.warm, touching.rows)
-    D, shape, pressed = directions(space), extents(space), False
+    D, shape, nodes, force = directions(space), extents(space), grids.nodes[:, now], grids.force[:, now]
+    at, coef = weigh(space, gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
+    problem = Problem(contacts, at, coef, touching.fields, nodes, force, touching.tools, np.zeros((count, D)))
+    press(space, problem, count, pace.ahead, pace.sound, touching.warm, touching.rows)
+    if keep_books(space, touching, skin, contacts, problem.impulse, pace.dt):
+        for f in range(len(touching.walls)):
+            unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
+            if wants_change(scheme):
+                unfold(force[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
+
+
+@kernel
+def keep_books(space, touching, skin, contacts, impulse, dt):
+    """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
+    D, B, pressed = directions(space), len(touching.first) - 1, False
+    way, moment, still = np.zeros(3), np.zeros(3), np.zeros(D)
     touching.warm[:] = 0.0
-    for i in range(count):
+    for i in range(len(impulse)):
         s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
+        a, b, to = contacts.body[i, 0], contacts.body[i, 1], contacts.against[i]
+        arm(touching.tools, to - BODY - B if to >= BODY + B else -1, contacts.point[i, 0], way)
+        cross(way, impulse[i], moment)
+        still[:] = 0.0
+        carry(touching.tools, contacts.free[i], still)
         for c in range(D):
+            touching.worked[0] += impulse[i, c] * (contacts.given[i, c] - still[c])
             along += impulse[i, c] * contacts.normal[i, c]
-            touching.pushed[contacts.body[i, 0], contacts.against[i], c] += impulse[i, c]
-            if contacts.body[i, 1] >= 0:
-                touching.pushed[contacts.body[i, 1], 6 + contacts.body[i, 0], c] -= impulse[i, c]
+            touching.pushed[a, to, c] += impulse[i, c]
+            if b >= 0:
+                touching.pushed[b, BODY + a, c] -= impulse[i, c]
             if s >= 0:
                 touching.warm[s, row, c] = impulse[i, c]
+        for c in range(3):
+            touching.turned[a, to, c] += moment[c]
+            if b >= 0:
+                touching.turned[b, BODY + a, c] -= moment[c]
         pressed = pressed or along > 0.0
         touching.deepest[0] = max(touching.deepest[0], -contacts.gap[i])
         if contacts.balanced[i, 0] and (along > 0.0 or contacts.gap[i] <= TOUCH * space.h):
             touching.touched[s, row] += dt
-    if pressed:
-        for f in range(len(touching.walls)):
-            unfold(nodes[f, now], D, shape, boxes[f, now], touching.walls[f], blocks[f, now])
-            if wants_change(scheme):
-                unfold(force[f, now], D, shape, boxes[f, now], touching.walls[f], blocks[f, now])
+            touching.spread[a, to] += skin.area[s] * dt
+    return pressed
+
+
+@kernel
+def cross(x, v, out):
+    """out (3,) = x cross v, of vectors in a plane or in space."""
+    a, b, c = v[0], v[1] if len(v) > 1 else 0.0, v[2] if len(v) > 2 else 0.0
+    out[0], out[1], out[2] = x[1] * c - x[2] * b, x[2] * a - x[0] * c, x[0] * b - x[1] * a

@@ -2,55 +2,48 @@
 
 w~_i = w_ip + G_ip . (x_s - x_p)                     linear-exact: sum w~ = 1, sum w~ x_i = x_s, and sum w~ v_i is the speed of the piece as F carries it
 r_i  = sum_p V_p G_ip - sum_s S_s n_s w~_is          what a uniform stress puts on a node beyond a uniform traction: the quadrature of cut cells
-W_i  = w~_i + (n . r_i) w_ip/sum_s S_s w_ip(s),      then W_i += m_i (a + b . (x_i - x_s)) with sum W = 1, sum W x_i = x_s
+W_i  = w~_i + (n . r_i) w_ip/(n . T_i n),  T_i = sum_s S_s w_ip(s) n_s n_s^T,  then W_i += m_i (a + b . (x_i - x_s)) with sum W = 1, sum W x_i = x_s
 
 With W a body in equilibrium under a traction has the same strain in its surface particles as inside; with w~ up to 1.5 times. Corners, and faces that do not
 look along the normal, keep w~. In an axisymmetric body V_p carries its hoop stress too: r_i += V_p w_ip/r_p along r.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions
+from mpm.contact.skin import hoop
 from mpm.contact.spots import new_spots, seen, spot
-from mpm.jit import kernel, role
-from mpm.state import Axisymmetric, Line, Plane, Volume
+from mpm.jit import kernel
 
 
-@role
-def hoop(space):
-    """Whether the first direction is a radius."""
-    raise TypeError(f"no directions of {type(space).__name__}")
+class Weights(NamedTuple):
+    """What is found, and scratch. C contacts, M nodes of each."""
 
-
-@hoop.register(Line)
-@hoop.register(Plane)
-@hoop.register(Volume)
-def hoop_volume_or_plane_or_line(space):
-    return False
-
-
-@hoop.register(Axisymmetric)
-def hoop_axisymmetric(space):
-    return True
+    at: np.ndarray  # (C, 2, M) nodes
+    coef: np.ndarray  # (C, 2, D, M) W
+    number: np.ndarray  # (nodes,) -1 before and after
+    spots: Any
 
 
 @kernel
-def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, now, number):
-    """(at (count, 2, M), coef (count, 2, D, M)) of the contacts; number (nodes,) -1 before and after."""
+def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, number):
+    """(at (count, 2, M), coef (count, 2, D, M)) of the contacts; nodes (F, n, columns); number (nodes,) -1 before and after."""
     D, M = directions(space), seen(space) ** directions(space)
-    at, coef = np.zeros((count, 2, M), np.int64), np.zeros((count, 2, D, M))
-    spots, b = new_spots(space), 0
+    weights, b = Weights(np.zeros((count, 2, M), np.int64), np.zeros((count, 2, D, M)), number, new_spots(space)), 0
     for body in literal_unroll(bodies):
         f = fields[b]
-        weigh_body(space, gradient, body, b, walls[f], skin, contacts, count, nodes[f, now], number, spots, at, coef)
+        weigh_body(space, gradient, body, b, walls[f], skin, contacts, count, nodes[f], weights)
         b += 1
-    return at, coef
+    return weights.at, weights.coef
 
 
 @kernel
-def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, number, spots, at, coef):
+def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, weights):
     """One body's sides of the contacts."""
+    at, coef, number, spots = weights.at, weights.coef, weights.number, weights.spots
     D, M, marked = directions(space), at.shape[2], 0
     low, high = np.full(D, 1e300), np.full(D, -1e300)
     for i in range(count):
@@ -64,7 +57,7 @@ def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, nu
                     marked += 1
             for a in range(D):
                 low[a], high[a] = min(low[a], contacts.home[i, k, a]), max(high[a], contacts.home[i, k, a])
-    short = np.zeros((marked, D + 1))  # r, and the sum of S w
+    short = np.zeros((marked, D + D * D))  # r, and T
     if marked > 0:
         fall_short(space, gradient, body.particles, b, walls, skin, low, high, number, spots, short)
     system, W = np.empty((D + 1, D + 2)), np.empty(M)
@@ -100,7 +93,7 @@ def plain(spots, home, point, W):
 
 @kernel
 def fall_short(space, gradient, particles, b, walls, skin, low, high, number, spots, short):
-    """r and sum S w of the marked nodes, from the particles and pieces of body b between `low` and `high`."""
+    """r and T of the marked nodes, from the particles and pieces of body b between `low` and `high`."""
     at, w, G, _, sign = spots[0], spots[1], spots[2], spots[3], spots[4]
     D, M, far, home, W = directions(space), len(at), seen(space) * space.h, np.empty(directions(space)), np.empty(len(at))
     for p in range(particles.x.shape[0]):
@@ -130,8 +123,9 @@ def fall_short(space, gradient, particles, b, walls, skin, low, high, number, sp
         for m in range(M):
             n = number[at[m]]
             if n >= 0:
-                short[n, D] += skin.area[s] * w[m]
                 for c in range(D):
+                    for e in range(D):
+                        short[n, D + c * D + e] += skin.area[s] * w[m] * skin.normal[s, c] * skin.normal[s, e]
                     short[n, c] -= skin.area[s] * skin.normal[s, c] * W[m] * sign[c, m]
 
 
@@ -146,9 +140,13 @@ def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
     before, y = W.copy(), np.empty(D + 1)
     for m in range(M):
         n = number[at[m]]
-        if short[n, D] > 0.0:
+        borne = 0.0
+        for c in range(D):
+            for e in range(D):
+                borne += contacts.normal[i, c] * contacts.normal[i, e] * short[n, D + c * D + e]
+        if borne > 1e-12 * space.h ** (D - 1):
             for c in range(D):
-                W[m] += out * contacts.normal[i, c] * sign[c, m] * short[n, c] * w[m] / short[n, D]
+                W[m] += out * contacts.normal[i, c] * sign[c, m] * short[n, c] * w[m] / borne
         terms(way, shift, space.h, m, y)
         mass = nodes[at[m], D]
         for r in range(D + 1):

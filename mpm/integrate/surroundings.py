@@ -37,13 +37,14 @@ class Act:
 
 @dataclass(frozen=True)
 class HotWall:
-    """A wall across `axis` (side 0 lower, 1 upper) with its own beta and temperature (number or programme)."""
+    """A wall across `axis` (side 0 lower, 1 upper), or a tool, with its own beta and temperature (number or programme)."""
 
     axis: int
     side: int
     beta: float
     temperature: Any
     touched: Any = None  # (S,) time in touch since the last heat step [s]; None: a mirror
+    tool: str = ""  # its name; nothing of a wall
 
 
 @dataclass
@@ -96,7 +97,8 @@ class Surroundings:
         """Kinds of the walls (3, 2) for heat: CONTACT, which mirrors nothing, where a wall is hot, and where pieces that exchange something lie on it."""
         surface, found = body.surface, kinds.copy()
         for wall in self.walls:
-            found[wall.axis, wall.side] = CONTACT
+            if not wall.tool:
+                found[wall.axis, wall.side] = CONTACT
         acting = (surface.beta > 0) | (surface.flux != 0)
         if isinstance(surface.radiation, Radiation):
             acting |= surface.radiation.emissivity > 0

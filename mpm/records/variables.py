@@ -65,7 +65,7 @@ TABLE = [
     ("energy.ledger", "", "J", SERIES, "energy and heat gained or dissipated, less work of loads and heat taken in: what the method made"),
     ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
     ("dissipation.transfer", "", "J", SERIES, "energy of motion that no law of the config took: lost in transfers, at walls and by the time step"),
-    ("work.loads", "", "J", SERIES, "work of loads on the bodies since the start"),
+    ("work.loads", "", "J", SERIES, "work of loads and tools on the bodies since the start"),
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
     ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
@@ -145,6 +145,12 @@ TABLE = [
     *((f"extent.{a}", "", "m", SERIES, f"extent of the material along {a}") for a in AXES),
 ]
 
+MET = {  # what a wall, a tool or another body does: <what>.<of>, with a direction behind it for forces and torques
+    "force": ("N", "mean force since the record before, on bodies by {}"),
+    "torque": ("N m", "mean torque since the record before, on bodies by {}, about the tool's centre or the origin of coordinates"),
+    "area": ("m2", "mean area in touch since the record before, with {}"),
+    "heat": ("J", "heat taken in by the first body from the second since the start, {}"),
+}
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
 NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "work.loads", "velocity.max",
                   "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
@@ -157,6 +163,7 @@ OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 _THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")
 _IN_DATASET = r"time_to_(?P<probe>{})_(?P<value>-?\d+(?:_\d+)?)_(?P<unit>degC|K)"
 _PROBED = re.compile(r"(?P<field>displacement|stress)[._](?P<probe>[A-Za-z_]\w*)_(?P<part>[xyzr]|[xyzrt]{2})")
+_MET = re.compile(r"(?:(?P<turned>force|torque)[._](?P<on>[A-Za-z_]\w*)_(?P<axis>[xyzr])|(?P<what>area|heat)[._](?P<of>[A-Za-z_]\w*))")
 _AT_PROBE = ("temperature", "velocity")
 
 
@@ -194,6 +201,12 @@ def probed(name: str) -> tuple[str, str, str] | None:
     return (match["field"], match["probe"], match["part"]) if match and (match["field"] == "stress") == (len(match["part"]) == 2) else None
 
 
+def met(name: str) -> tuple[str, str, str] | None:
+    """(what, wall or tool or pair, direction or nothing) of `force.bottom_z`, `area.press`, `heat.a_b`, or of their names in a dataset; None for any other."""
+    match = _MET.fullmatch(name) if dataset_name(name) not in VARIABLES else None
+    return match and (match["turned"] or match["what"], match["on"] or match["of"], match["axis"] or "")
+
+
 def parts(field: str, dimension: int | str | None) -> list[str]:
     """What a probe of a field may be asked for in scenes of a dimension."""
     return components(field, dimension).split() if field == "stress" else list({1: "x", 2: "xy", "axisymmetric": "rz", 3: "xyz"}.get(dimension, ""))
@@ -201,12 +214,12 @@ def parts(field: str, dimension: int | str | None) -> list[str]:
 
 def observable_exists(name: str) -> bool:
     """Whether a config may list `name`. Whether its probe exists is for the config to say."""
-    return name in OBSERVABLES or threshold(name) is not None or probed(name) is not None
+    return name in OBSERVABLES or any(found(name) is not None for found in (threshold, probed, met))
 
 
 def is_total(name: str) -> bool:
     """Whether a dataset name is a sum over the body."""
-    return name in VARIABLES and VARIABLES[name].units in TOTALS
+    return VARIABLES[name].units in TOTALS if name in VARIABLES else met(name) is not None
 
 
 def turn(dimension: int | str | None) -> float:
@@ -224,11 +237,15 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
 
     `probes` as in `threshold`.
     """
+    whole = VARIABLES.get(name)
+    if whole is None and (found := met(name)):
+        what, of, axis = found
+        whole = Variable(name, "", MET[what][0], SERIES, MET[what][1].format(of.replace("_", " ")) + (f", along {axis}" if axis else ""))
     if is_total(name) and dimension in PER:
-        (units, of), whole = PER[dimension], VARIABLES[name]
+        units, of = PER[dimension]
         return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {of}")
-    if name in VARIABLES:
-        return VARIABLES[name]
+    if whole is not None:
+        return whole
     if found := threshold(name, probes):
         unit = "°C" if found.unit == "degC" else "K"
         return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
@@ -251,6 +268,10 @@ def fits(observable: str, dimension: int | str) -> bool:
     """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
     if found := probed(observable):
         return found[2] in parts(found[0], dimension)
+    if found := met(observable):
+        if dimension == 0 or (found[0] == "torque" and dimension not in (2, 3)):
+            return False
+        return not found[2] or (found[2] == "z" if (found[0], dimension) == ("torque", 2) else found[2] in parts("displacement", dimension))
     if observable.startswith(AT_A_POINT) and observable != "strain.max":
         return dimension == 0
     if dimension == 0 and observable in NOT_AT_A_POINT:

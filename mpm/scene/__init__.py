@@ -24,6 +24,7 @@ Further files
     scaling            slow scenes on a fast clock
     sphere             exact quadrature of a ball cut by a three-dimensional grid
     still              bodies that do not move
+    tools              tools of a config
     total              bodies of a config in the total frame
     traction           loads of a config to the run-time Load of a body
 """

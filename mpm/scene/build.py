@@ -26,6 +26,7 @@ from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
 from mpm.scene.shapes import cells, shape
+from mpm.scene.tools import drive
 from mpm.scene.total import total_bodies, wall_kinds
 from mpm.scene.traction import loaded
 from mpm.simulation import HeatMethod, Scene
@@ -192,7 +193,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         bodies = (first, *bodies[1:])
     for body, reference in zip(bodies, references, strict=False):
         begin_nodes(space, body, reference)
-    met = None if references else meeting(meets, space, bodies, surroundings)
+    met = None if references else meeting(meets, space, bodies, surroundings, names, SIDES[experiment.grid.dimension], drive(experiment))
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),

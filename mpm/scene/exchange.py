@@ -37,13 +37,14 @@ def acts_of(entry, pieces) -> list[Act]:
 
 
 def hot_walls(experiment, sides) -> list[HotWall]:
-    """Walls that have `heat`; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
+    """Walls and tools that have `heat`; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
     found = []
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
         if heat is not None and heat.beta > 0:
             found.append(HotWall(number // 2, number % 2, heat.beta, programme(heat.temperature)))
-    return found
+    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and tool.heat.beta > 0]
+    return found + [HotWall(-1, -1, heat.beta, programme(heat.temperature), tool=name) for name, heat in hot]
 
 
 def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:

@@ -10,10 +10,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mpm.boundary import CONTACT, KINDS
+from mpm.contact.found import BODY
 from mpm.contact.meeting import Meeting
 from mpm.contact.skin import POINT
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.tools import refuse_tools
 
 AT = 1e-6  # cells: a body that starts nearer to a mirror is bonded to it
 SHARP = 0.3  # sine of the angle between two faces from which on their edge is a corner
@@ -30,10 +32,11 @@ class Meets:
     pairs: np.ndarray
     fields: np.ndarray
     links: np.ndarray
+    tools: bool = False
 
     @property
     def any(self) -> np.ndarray:
-        return (self.stops >= 0).any(axis=(1, 2)) | (self.pairs >= 0).any(axis=1) | (self.links > 0).any(axis=1)
+        return (self.stops >= 0).any(axis=(1, 2)) | (self.pairs >= 0).any(axis=1) | (self.links > 0).any(axis=1) | self.tools
 
 
 def plan_meetings(experiment, sides) -> Meets:
@@ -76,7 +79,8 @@ def plan_meetings(experiment, sides) -> Meets:
         stops[mine] = np.where((walls[mine] < CONTACT).any(axis=0), -1.0, stops[mine])
     refuse_overlap(experiment, names, outlines, boxes)
     refuse_apart(experiment, outlines)
-    found = Meets(walls, stops, pairs, fields, links)
+    refuse_tools(experiment, names, outlines)
+    found = Meets(walls, stops, pairs, fields, links, bool(experiment.tools))
     refuse_methods(experiment, found)
     return found
 
@@ -172,16 +176,21 @@ def refuse_overlap(experiment, names, outlines, boxes) -> None:
                 raise SceneError(("bodies", names[b], "shape"), said)
 
 
-def meeting(meets: Meets, space, bodies, surroundings) -> Meeting:
-    """What the run keeps of it; hot walls that a body is not bonded to act while it touches them."""
-    met = Meeting(space, tuple(bodies), meets.walls, meets.stops, meets.pairs, meets.fields, meets.links)
+def meeting(meets: Meets, space, bodies, surroundings, names, sides, tools) -> Meeting:
+    """What the run keeps of it; hot walls that a body is not bonded to, and hot tools, act while it touches them."""
+    met = Meeting(space, tuple(bodies), meets.walls, meets.stops, meets.pairs, meets.fields, meets.links, names, sides, tools)
     met.warms = bool((met.links > 0).any())
     for b, around in enumerate(surroundings):
         if around is not None:
-            around.walls = [replace(wall, touched=met.touched(b, 2 * wall.axis + wall.side)) if met.walls[b, wall.axis, wall.side] == CONTACT else wall
-                            for wall in around.walls]  # fmt: skip
+            around.walls = [replace(wall, touched=met.touched(b, at)) if (at := against(wall, met)) >= BODY or met.walls[b, wall.axis, wall.side] == CONTACT
+                            else wall for wall in around.walls]  # fmt: skip
             met.warms = met.warms or any(wall.touched is not None for wall in around.walls)
     return met
+
+
+def against(wall, met: Meeting) -> int:
+    """The number of a hot wall or tool (mpm.contact.found)."""
+    return BODY + len(met.names) + met.tool_names.index(wall.tool) if wall.tool else 2 * wall.axis + wall.side
 
 
 def cornered(cut, h: float):

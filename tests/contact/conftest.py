@@ -5,9 +5,12 @@ import os
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))  # for contact_scenes.py
 
 PLAIN = """
 import json, sys

@@ -1,0 +1,49 @@
+"""What walls, tools and bodies do to each other, for the records: mean force, torque and area in touch since the last record, and heat since the start."""
+
+import numpy as np
+
+from mpm.contact.found import BODY
+
+
+def series(met, axes: tuple[str, ...], since: float):
+    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record [s].
+
+    force    on bodies by a wall or tool; on the first of a pair by the second
+    torque   of that force about a tool's centre, and about the origin of coordinates else
+    """
+    touching, B = met.touching, len(met.names)
+    part = 1.0 / since if since > 0.0 else 0.0
+    for k, (side, tool) in enumerate([*((side, None) for side in met.sides), *((None, name) for name in met.tool_names)]):
+        at = k if tool is None else BODY + B + k - len(met.sides)
+        if tool is None and not (met.stops.reshape(B, 6)[:, k] >= 0).any():
+            continue
+        yield from told(side or tool, axes, part * touching.pushed[:, at].sum(axis=0), part * touching.turned[:, at].sum(axis=0),
+                        part * touching.spread[:, at].sum())  # fmt: skip
+    for a in range(B):
+        for b in range(a + 1, B):
+            both = f"{met.names[a]}_{met.names[b]}"
+            if met.pairs[a, b] >= 0:
+                area = 0.5 * part * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
+                yield from told(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
+            if met.links[a, b] > 0:
+                yield f"heat_{both}", met.passed[a, b]
+    for gathered in (touching.pushed, touching.turned, touching.spread, touching.deepest):
+        gathered[:] = 0.0
+
+
+def told(name: str, axes, force, torque, area):
+    """The series of one obstacle. There is a torque in a plane and in space; about the axis of a round body there is none."""
+    for k, axis in enumerate(axes):
+        yield f"force_{name}_{axis}", force[k]
+    if "r" not in axes:
+        for k, axis in enumerate({2: ("z",), 3: ("x", "y", "z")}.get(len(axes), ())):
+            yield f"torque_{name}_{axis}", torque[2 if len(axes) == 2 else k]
+    yield f"area_{name}", area
+
+
+def passed(links, heat, B: int) -> np.ndarray:
+    """Heat (B, B) that each body took in from each other one, from that through each link [J]."""
+    found = np.zeros((B, B))
+    np.add.at(found, (links.body[:, 0], links.body[:, 1]), -heat)
+    np.add.at(found, (links.body[:, 1], links.body[:, 0]), heat)
+    return found

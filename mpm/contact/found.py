@@ -1,0 +1,61 @@
+"""The contacts of one step, as find.py and tools.py fill them and solve.py reads them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mpm.boundary import directions
+from mpm.contact.skin import POINT, hoop
+from mpm.jit import kernel
+
+NEAR, REACH = 0.6, 1.25  # cells: gaps that a step can close; how far faces of another body are looked for
+FACING, CORNER = -0.5, -0.2  # cosines
+BODY = 6  # against: 2 axis + side of a wall; BODY + b for body b of B; BODY + B + t for tool t
+
+
+class Contacts(NamedTuple):
+    """Room for C contacts of a piece of A with a wall, a tool or B; sides 0 (A) and 1 (B)."""
+
+    piece: np.ndarray  # (C,) of A; -1: a particle without a piece
+    against: np.ndarray  # (C,)
+    gap: np.ndarray  # (C,) [m]
+    mu: np.ndarray  # (C,) friction; inf: no sliding
+    normal: np.ndarray  # (C, D) out of the obstacle
+    body: np.ndarray  # (C, 2); -1 for a wall or a tool
+    owner: np.ndarray  # (C, 2) particle
+    home: np.ndarray  # (C, 2, D) of it [m]
+    point: np.ndarray  # (C, 2, D) place of the contact [m]
+    balanced: np.ndarray  # (C, 2) whether the weights are balanced with the stress: faces that look along the normal
+    given: np.ndarray  # (C, D) velocity of the obstacle there [m/s], less that of a tool which is free
+    free: np.ndarray  # (C,) number of a tool that forces move; -1
+
+
+@kernel
+def new_contacts(C, D):
+    """Room for C contacts."""
+    return Contacts(np.empty(C, np.int64), np.empty(C, np.int64), np.empty(C), np.empty(C), np.empty((C, D)), np.empty((C, 2), np.int64),
+                    np.empty((C, 2), np.int64), np.empty((C, 2, D)), np.empty((C, 2, D)), np.empty((C, 2), np.uint8), np.empty((C, D)),
+                    np.empty(C, np.int64))  # fmt: skip
+
+
+@kernel(inline=True)
+def around(space, r):
+    """What areas and volumes have been multiplied by: the radius, in an axisymmetric scene."""
+    return max(r, 1e-300) if hoop(space) else 1.0
+
+
+@kernel
+def put(found, i, piece, against, gap, mu, b, owner, home, point, balanced):
+    """Write side A of contact i, where there is room."""
+    found.piece[i], found.against[i], found.gap[i], found.mu[i] = piece, against, gap, mu
+    found.body[i, 0], found.body[i, 1], found.owner[i, 0], found.balanced[i, 0], found.balanced[i, 1] = b, -1, owner, balanced, 0
+    found.home[i, 0], found.point[i, 0], found.given[i], found.free[i] = home, point, 0.0, -1
+
+
+@kernel(inline=True)
+def faces(space, skin, s, normal, out):
+    """Whether piece s is a face that looks against `out` times the normal (D,) of an obstacle."""
+    cosine = 0.0
+    for c in range(directions(space)):
+        cosine += out * skin.normal[s, c] * normal[c]
+    return skin.area[s] > 2 * POINT * space.h ** (directions(space) - 1) and cosine < FACING

@@ -1,0 +1,118 @@
+"""Tools: what they push, turn and warm, against exact cases, in plain Python."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+from contact_scenes import bars, dropped, pressed
+
+import mpm
+from mpm.scene.build import SceneError, build
+
+
+def test_a_bar_between_two_tools(plain):
+    """P = E ln F/F to 0.5 %, the strain of every particle to 5 %, wherever the grid's lines are; floor and press to 5e-5."""
+    for offset, run in zip((0.0, 0.3), plain([pressed(1, offset) for offset in (0.0, 0.3)]), strict=True):
+        s = run["series"]
+        push, back = -s["force_press_x"][-1], s["force_anvil_x" if offset else "force_left_x"][-1]
+        assert push == pytest.approx(-math.log(0.9) / 0.9, rel=0.005) and back == pytest.approx(push, rel=2e-3)
+        assert np.log([s["J_min"][-1], s["J_max"][-1]]) / math.log(0.9) == pytest.approx(1.0, abs=0.05)
+        assert s["work_loads"][-1] < 0 or s["work_loads"][-1] == pytest.approx(s["energy_elastic"][-1], rel=0.3)
+
+
+def test_a_weight_on_a_bar(plain):
+    """A tool that a force pushes comes to rest where the bar bears the force: -P = E ln F/F for the length F of the bar, F = 0.9."""
+    load = math.log(0.9) / 0.9
+    scene = pressed(1, end=60.0)
+    scene["tools"]["press"]["motion"] = {"force": [load], "mass": 0.5}
+    scene["loads"][0]["drag"]["rate"] = 1.5
+    (run,) = plain([scene])
+    s = run["series"]
+    assert run["kind"] == "completed" and s["velocity_max"][-1] < 1e-3
+    assert s["force_press_x"][-1] == pytest.approx(load, rel=5e-3) and s["extent_x"][-1] == pytest.approx(0.9, abs=1e-3)
+
+
+def test_a_belt_takes_a_block_along(plain):
+    """A tool that moves sideways under a block: mu g, until they go alike."""
+    scene = dropped(2, 0.0, drag=0.0, end=0.8, cells=1, E=20.0)
+    scene["grid"]["size"] = [1.5, 0.75]
+    scene["bodies"]["block"]["shape"]["box"] |= {"lower": [0.3, 0.25], "upper": [0.425, 0.375]}
+    belt = {"shape": {"box": {"lower": [-3.0, 0.0], "upper": [3.0, 0.25]}}, "motion": {"velocity": [0.1, 0]}, "friction": 0.5}
+    scene |= {"tools": {"belt": belt}, "loads": [], "walls": {}}
+    (run,) = plain([scene])
+    t, v = run["times"], run["series"]["momentum_x"] / run["series"]["mass_total"][0]
+    w = run["series"]["momentum_y"] / run["series"]["mass_total"][0]
+    sliding = (t > 0.06) & (t < 0.16)
+    assert v[sliding] == pytest.approx(0.5 * (t + w)[sliding], rel=0.02)  # mu times the impulse of the normal force
+    assert np.mean(v[t > 0.4]) == pytest.approx(0.1, rel=0.03)  # it sways about it
+
+
+def test_a_hot_tool_is_a_hot_wall(plain):
+    """The same bar on a tool that stands at the wall, and on the wall: the same heat."""
+    heat = {"beta": 20.0, "temperature": 400}
+    scene = bars(1, end=0.05, every=0.01)
+    del scene["bodies"]["b"], scene["bodies"]["a"]["velocity"]
+    scene["bodies"]["a"] |= {"shape": {"box": {"lower": [0.25], "upper": [1.25]}}, "temperature": 300}
+    scene["materials"]["m"]["heat"] = {"fourier": {"kappa": 1.0, "alpha": 1.0}}
+    other = copy.deepcopy(scene)
+    scene["tools"] = {"pan": {"shape": {"box": {"lower": [0.0], "upper": [0.25]}}, "heat": heat}}
+    other["bodies"]["a"]["shape"]["box"] = {"lower": [0.0], "upper": [1.0]}
+    other["walls"] = {"left": {"contact": {"heat": heat}}}
+    tool, wall = (run["series"]["heat_exchanged"] for run in plain([scene, other]))
+    assert wall[-1] > 10 and tool == pytest.approx(wall, rel=1e-6)
+
+
+def test_a_path_goes_down_and_up(plain):
+    """Two bites: the force is there while the tool is down, and gone when it is up; the tool is where its programme says."""
+    scene = pressed(1, end=40.0)
+    path = {"time": [0, 10, 20, 30, 40], "displacement": [[0.0], [-0.1], [0.05], [-0.1], [0.05]]}
+    scene["tools"]["press"]["motion"] = {"path": path}
+    scene["output"]["every"] = 0.5
+    (run,) = plain([scene])
+    t, force, top = run["times"], run["series"]["force_press_x"], run["series"]["position_max_x"]
+    down = (np.abs(t - 10) < 0.3) | (np.abs(t - 30) < 0.3)
+    assert run["kind"] == "completed" and -force[down].max() > 0.1 and np.abs(force[np.abs(t - 20) < 1.5]).max() == 0.0
+    assert top[np.abs(t - 10) < 0.1] == pytest.approx(0.9, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"shape": {"box": {"lower": [0.95], "upper": [1.4]}}}, "tools.press.shape: it overlaps bar at the start by 0.4 cells"),
+        ({"shape": {"box": {"lower": [1.0], "upper": [1.1]}}}, "tools.press.shape: it is 0.8 cells thick"),
+        ({"motion": {"velocity": [-2.0]}}, "over 0.2 of the speed of sound"),
+    ],
+)
+def test_tools_that_no_step_can_follow(change, said):
+    scene = pressed(1)
+    scene["tools"]["press"] |= change
+    with pytest.raises(SceneError, match=said):
+        build(mpm.load(scene))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"motion": {"velocity": [1, 0]}}, "the velocity needs 1 number in dimension 1"),
+        ({"motion": {"spin": 1.0}}, "there is no rotation in dimension 1"),
+        ({"motion": {"force": [-1.0]}}, "a tool with a force needs a mass"),
+        ({"motion": {"velocity": [0.1], "force": [1.0], "mass": 1.0}}, "say different things"),
+        ({"motion": {"path": {"time": [0, 1], "displacement": [[0.0]]}}}, "2 times but 1 displacements"),
+        ({"shape": {"cylinder": {"radius": 1, "height": 1, "base": [0]}}}, "there is no cylinder in dimension 1"),
+        ({"heat": {"beta": 5, "temperature": 300}}, "no body has heat"),
+    ],
+)
+def test_tools_are_checked(change, said):
+    scene = pressed(1)
+    scene["tools"]["press"] |= change
+    with pytest.raises(mpm.ConfigError, match=said):
+        mpm.load(scene)
+
+
+def test_observables_of_what_is_met():
+    scene = pressed(1)
+    scene["output"]["observables"] = ["force.press_x", "area.left", "force.pres_x"]
+    with pytest.raises(mpm.ConfigError, match="there is no wall, tool or pair of bodies 'pres'") as found:
+        mpm.load(scene)
+    assert len(found.value.problems) == 1
