@@ -109,6 +109,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.output, once),
     (point.heating, each("materials")),
     (fitting.fit, once),
+    (fitting.refine, once),
     (framing.frame, once),
     (framing.frame_wall, each("walls")),
     (framing.frame_material, each("materials")),

@@ -17,6 +17,27 @@ def parameters(experiment: Any) -> Iterator[Finding]:
             yield Finding(("parameters", name), f"{name!r} means something else in formulas", f"another name, as {name}_0", on_key=True)
 
 
+def refine(experiment: Any) -> Iterator[Finding]:
+    """The observable is recorded, and the level is a value of it."""
+    from mpm.config.measured import Unreadable, number
+    from mpm.records.variables import dataset_name, describe
+
+    asked = experiment.sweep.refine if experiment.sweep is not None else None
+    if asked is None:
+        return
+    output, name = experiment.output, dataset_name(asked.of)
+    known = [*map(dataset_name, output.observables), *(f"temperature_{probe}" for probe in output.probes)]
+    if name not in known:
+        yield Finding(("sweep", "refine", "of"), "this is not recorded", known or "a probe or an observable under output", given=asked.of)
+    elif isinstance(asked.level, str):
+        try:
+            level = number(asked.level, describe(name, experiment.grid.dimension, output.probes).units, "level", "level")
+        except Unreadable as error:
+            yield Finding(("sweep", "refine", "level"), error.message, error.allowed)
+        else:
+            asked.__dict__["level"] = level
+
+
 def fit(experiment: Any) -> Iterator[Finding]:
     """Parameters have ranges, the curves are there, and their errors can be weighed against one another."""
     from dataclasses import replace

@@ -6,7 +6,7 @@ from pydantic import Field
 from pydantic_core import core_schema
 
 from mpm.config.base import Kind, Model, doc, one_of, problem
-from mpm.config.quantities import Whole
+from mpm.config.quantities import Fraction, Whole
 
 Count = Annotated[int, Whole("count", 1, 10**9)]
 Seed = Annotated[int, Whole("seed", 0, 2**63 - 1)]
@@ -103,6 +103,15 @@ class Saltelli(Design):
 DESIGNS: tuple[type[Kind], ...] = (Sobol, Latin, Halton, Uniform, Saltelli)
 
 
+class Refine(Model):
+    """New points between the axes' own, where the answer bends, crosses a level, or ok meets failed."""
+
+    of: str = doc(description="the observable that decides: its final value, as temperature_centre or time_to_centre_95_degC")
+    level: float | str | None = doc(None, description="follow where the observable crosses this value, as 95 degC; where it bends unless given")
+    until: Fraction = doc(0.01, description="how well it is to be known: of the ranges where a level or failures are followed, else of the observable's spread")
+    points: Count = doc(200, description="most points, with the axes' own")
+
+
 class Sweep(Model):
     """The points of a sweep: the product of all axes, zips, the sample and the list of points, without what `where` drops."""
 
@@ -111,4 +120,5 @@ class Sweep(Model):
     sample: one_of("design", *DESIGNS) | None = None
     points: tuple[dict[str, Any], ...] = doc((), description="an explicit list of points")
     derive: dict[str, str] = doc({}, description="parameter: formula over others, in SI numbers, as in 'beta / kappa * 0.02'")
+    refine: Refine | None = None
     where: str | None = doc(None, description="a condition on swept parameters; points that fail it are skipped")

@@ -63,6 +63,10 @@ def execute(
     """Run what is missing of a sweep, then collect. Nothing is written before the whole plan is valid. `kind` as in `planned`."""
     options, reporter = options or Options(), reporter or Reporter()
     began = time.monotonic()
+    if kind == "sweep" and experiment.sweep is not None and experiment.sweep.refine is not None:
+        from mpm.sweep.refine import refine
+
+        return refine(experiment, out or default_out(experiment), options, reporter)
     plan = planned(experiment, kind, max_runs)
     store, points = Store(out or default_out(experiment)), Points.of(plan)
     with taken(store, reporter.note, jobs=options.jobs):

@@ -54,9 +54,11 @@ class Kept:
 class Rounds:
     """Points over `paths` of an experiment that has no sweep of its own."""
 
-    def __init__(self, experiment: Any, paths: Sequence[str], out: Path, options: Options | None = None, reporter: Reporter | None = None):
+    def __init__(self, experiment: Any, paths: Sequence[str], out: Path, options: Options | None = None, reporter: Reporter | None = None,
+                 derive: dict[str, str] | None = None):  # fmt: skip
         self.experiment, self.paths = experiment.model_copy(update={"sweep": None}), tuple(paths)
         self.experiment._placed(experiment)
+        self.derive = derive or {}
         self.options, self.reporter = options or Options(), reporter or Reporter()
         self.store, self.ran, self.asked, self.compiling = Store(out), 0, {}, 0.0
         self.executor: Any = None
@@ -86,7 +88,7 @@ class Rounds:
 
     def sweep(self, points: Sequence[Sequence[float]]) -> Any:
         """The experiment with these points alone."""
-        listed = Sweep(points=tuple(dict(zip(self.paths, map(float, point), strict=True)) for point in points))
+        listed = Sweep(points=tuple(dict(zip(self.paths, map(float, point), strict=True)) for point in points), derive=self.derive)
         made = self.experiment.model_copy(update={"sweep": listed})
         made._placed(self.experiment)
         return made
