@@ -22,6 +22,7 @@ To add      a function View -> Figure in layouts.py or a sibling, and a line in 
 Further files
     chart       the figure of a chart (`chart.nc`)
     fit         the figure of `mpm fit`
+    sensitivity the figure of `mpm sensitivity`
     stability   the figure of `mpm stability`
     style       how figures look
     theory      the figure of `mpm.study.theory`
