@@ -68,3 +68,11 @@ def test_its_short_form_runs(path):
     assert run.times[-1] == pytest.approx(point.time.end)
     if "heat_ledger" in run.series:
         assert abs(run.series["heat_ledger"]).max() <= 1e-12 * heat_scale(point, run)
+
+
+@pytest.mark.slow
+def test_slump_has_no_warnings_over_its_whole_sweep(tmp_path):
+    """The first scene that a new user sweeps: every point ok, and nothing that a careful user would want to know of."""
+    tree = mpm.sweep(mpm.load(ROOT / "scenes" / "slump.yaml"), out=tmp_path / "slump", jobs=2)
+    assert tree.status.size == 32 and (tree.status == 0).all()
+    assert not [text for text in tree.warnings.values.ravel() if text]

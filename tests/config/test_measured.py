@@ -188,3 +188,16 @@ def test_what_is_no_plain_file_of_some_size_is_refused_and_not_waited_for(tmp_pa
         with pytest.raises(mpm.ConfigError, match=words) as caught:
             curve(tmp_path, HEAD + "1,20\n", BASE.replace("file: curve.csv", f'file: "{name}"'))
         assert "scene.yaml:7:" in str(caught.value)
+
+
+@pytest.mark.parametrize("rows", ["[[3, 300], [4, 301, 1]]", "[[3, 300, 1], [4, 301]]", "[[3], [4]]", "[[3, 300, 1, 1]]"])
+def test_samples_of_other_lengths_are_refused(tmp_path, rows):
+    with pytest.raises(mpm.ConfigError, match=r"each sample is .*, all alike"):
+        curve(tmp_path, "", BASE.replace("file: curve.csv, time: minute, value: oven_degC", f"samples: {rows}"))
+
+
+def test_what_is_wrong_with_a_whole_file_names_the_file_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(mpm.ConfigError) as told:
+        curve(tmp_path, "", BASE.replace("curve.csv", "pipe.csv"))
+    assert "output.measured.middle.file: pipe.csv: this is no plain file" in str(told.value)

@@ -7,7 +7,7 @@ import pytest
 
 from mpm.heat.local import heat_locally, latch, rise, temperature, thermal_stress
 from mpm.materials import Bump, Constant, Hencky, Logistic, enthalpy, stress, table
-from mpm.state import Expansion, Heating, Isothermal, Latched, NoExpansion, NoHeating, Thermal
+from mpm.state import Expansion, GridHeating, Heating, Isothermal, Latched, NoExpansion, NoHeating, Softening, Thermal
 
 R0 = 1.7
 
@@ -80,3 +80,16 @@ def test_latched_expansion_swells_sets_and_stays():
         latch(law, state, 0)
         assert thermal_stress(law, state, 0) == seen[-1]
     assert seen == pytest.approx([20.0, 40.0, 40.0, 80.0, 80.0, 80.0], rel=1e-14)
+
+
+def test_thermal_stress_of_moduli_that_follow_temperature():
+    """E(Theta) times that of E = 1: at 300 K a table from 2 Pa to 4 Pa gives 3 Pa, and gamma 0.5/K times 310 - 300 K + 10 K of shift."""
+    law = Softening(Expansion(0.5, 10.0), table([250.0, 350.0], [2.0, 4.0]))
+    assert thermal_stress(law, thermal(Constant(2.5), theta=300.0, zero=290.0), 0) == pytest.approx(3.0 * 0.5 * 20.0)
+
+
+def test_dissipation_heats_also_where_the_grid_heats_elastically():
+    """Half of 6 J/m3 over density 1.7 and alpha 2.5; the stretch is the grid's to heat."""
+    state, none = thermal(Constant(2.5)), np.zeros(1)
+    assert heat_locally(GridHeating(0.3, 0.5, none, none), state, 0, R0, 0.2, 6.0) == 3.0
+    assert temperature(state, 0) - 300.0 == pytest.approx(3.0 / (R0 * 2.5), rel=1e-12)
