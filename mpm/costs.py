@@ -28,6 +28,7 @@ BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_0
 
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 LOOKED = 50_000  # particles of a scene that are all made to see its limits
+IMPLICIT, IMPLICIT_STEPS, WORTH = 15e-6, 120, 50.0  # s a particle and implicit step, heat included; steps at tolerance 1e-4; see by_mechanics
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
@@ -174,7 +175,7 @@ def estimate_moving(experiment) -> dict:
     steps = math.ceil(experiment.time.end / min(step, pace))
     intervals = outputs(experiment) - 1
     heat_steps = intervals * math.ceil(experiment.time.end / intervals / pace * (1 - 1e-9)) if now.heat else 0
-    return {
+    found = {
         "particles": particles,
         "unknowns": math.prod(extents(scene.space)),
         "steps": steps,
@@ -185,6 +186,34 @@ def estimate_moving(experiment) -> dict:
         "binds": "heat pace" if pace < step else binds,
         "physics": physics(experiment),
     }
+    return found if experiment.method.mechanics == "explicit" else by_mechanics(experiment, found)
+
+
+def by_mechanics(experiment, found: dict) -> dict:
+    """The estimate by the mechanics that the config names or `auto` takes: implicit where explicit steps would cost WORTH times as much. And why."""
+    from mpm.config.rules_mechanics import hindered
+
+    end, step, tolerance = experiment.time.end, experiment.time.step, experiment.method.mechanics_tolerance
+    steps = max(outputs(experiment) - 1, math.ceil(IMPLICIT_STEPS * (1e-4 / tolerance) ** 0.5)) if step == "auto" else math.ceil(end / step)
+    seconds = LEAST["moving"] + found["particles"] * steps * IMPLICIT + outputs(experiment) * ALONE["output"]
+    cost, why = f"explicit {found['seconds']:.2g} s in {found['steps']} steps, implicit {seconds:.2g} s in about {steps}", ""
+    if experiment.method.mechanics == "auto":
+        why = hindered(experiment) or ("" if found["seconds"] > WORTH * seconds else f"explicit steps cost less than {WORTH:g} times as much")
+    if why:
+        return found | {"mechanics": f"explicit: {why} ({cost})"}
+    named = "named" if experiment.method.mechanics == "implicit" else f"explicit steps cost more than {WORTH:g} times as much"
+    binds = "error of the step" if step == "auto" else "time.step"
+    return found | {"steps": steps, "seconds": seconds, "binds": binds, "mechanics": f"implicit: {named} ({cost})"}
+
+
+def settled(experiment):
+    """The experiment with explicit or implicit mechanics in place of `auto`."""
+    if experiment.method.mechanics != "auto":
+        return experiment
+    from mpm.config.rules_mechanics import named
+
+    chosen = estimate_moving(experiment)["mechanics"].partition(":")[0] if experiment.moving and experiment.grid.dimension != 0 else "explicit"
+    return named(experiment, chosen)
 
 
 def estimate_rigid(experiment) -> dict:

@@ -15,7 +15,7 @@ import sys
 import numpy as np
 
 from mpm import compiling
-from mpm.costs import estimate, refuse_endless
+from mpm.costs import estimate, refuse_endless, settled
 from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
 from mpm.records.provenance import cores
@@ -59,6 +59,7 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
     """Run the model that the config names."""
     from mpm.verification import exact_solution
 
+    experiment = settled(experiment)
     exact, shared, before = exact_solution(experiment), False, compiling.seconds()
     if experiment.grid.dimension == 0:
         from mpm.scene.point import run_zero
@@ -158,6 +159,7 @@ def warm(experiment) -> None:
         from mpm.reduce.choose import likely
 
         experiment = likely(experiment)
+    experiment = settled(experiment)
     short = experiment.resolved()
     if experiment.moving and experiment.grid.dimension != 0:
         from mpm.total.drive import present_limits
@@ -180,7 +182,7 @@ def compile_ahead(experiment) -> None:
         return
     if getattr(experiment.model, "kind", "full") == "auto" or not any(material.heat is not None for material in experiment.materials.values()):
         return
-    if experiment.method.mechanics == "implicit":
+    if experiment.method.mechanics != "explicit":
         return
     helper = subprocess.Popen(
         [sys.executable, "-P", "-c", HEAT_STEP, json.dumps(sys.path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True

@@ -14,10 +14,27 @@ def asked(experiment: Any) -> bool:
     return known(lambda: experiment.method.mechanics == "implicit")
 
 
+def named(experiment: Any, which: str) -> Any:
+    """The experiment with its mechanics named."""
+    return experiment.model_copy(update={"method": experiment.method.model_copy(update={"mechanics": which})})
+
+
+def hindered(experiment: Any) -> str:
+    """Why implicit mechanics cannot take an experiment, or is not what is wanted of it; empty where it can."""
+    one = named(experiment, "implicit")
+    found = [*mechanics(one), *(wrong for side, wall in one.walls.items() for wrong in mechanics_wall(one, side, wall))]
+    found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
+    if found:
+        return found[0].message
+    if experiment.exact is not None or any(body.velocity is not None or body.angular_velocity is not None for body in experiment.bodies.values()):
+        return "bodies begin in motion, or an exact solution asks for waves"
+    return ""
+
+
 def mechanics(experiment: Any) -> Iterator[Finding]:
     method, grid = experiment.method, experiment.grid
     if not asked(experiment):
-        if known(lambda: method.mechanics_tolerance != type(method).model_fields["mechanics_tolerance"].default):
+        if known(lambda: method.mechanics == "explicit" and method.mechanics_tolerance != type(method).model_fields["mechanics_tolerance"].default):
             yield Finding(("method", "mechanics_tolerance"), "explicit steps have no tolerance", "method.mechanics: implicit", on_key=True)
         return
     at = ("method", "mechanics")

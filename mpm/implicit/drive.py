@@ -5,6 +5,8 @@ Error    rms over particles of |u - predictor| dt/(dt + dt_before): predictor is
          dt clip(0.9 sqrt(tolerance L/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
          stresses are slightly out of balance with the new weights, and the move that mends this does not shrink with dt. The first step is exempt:
          a body that is put on its wall must sag.
+Kinetic  energy of motion over what gravity and loads have worked so far. Where a material without viscosity flows and it stays above SWIFT for PATIENCE steps,
+         the body falls down under more than it bears: inertia carries it, and backward Euler damps that. The run ends (no_equilibrium).
 Failure  everything as before the step, a quarter of dt; below LEAST of the first step the run ends (no_equilibrium).
 """
 
@@ -20,14 +22,16 @@ from mpm.implicit.contact import STIFFNESS, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
 from mpm.implicit.newton import Problem, minimise
 from mpm.implicit.nodes import new_nodes
-from mpm.integrate.strain import CODE, PARTICLE, STEP
+from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
 from mpm.integrate.timestep import limits, stiffest
+from mpm.materials import Constant, EllipseRadial
 from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, NO_EQUILIBRIUM, Outcome, outcome
 from mpm.state import Surface
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
-TOLD = ("rejected", "failed", "iterations", "shifts", "deepest")
+TOLD = ("rejected", "failed", "iterations", "shifts", "deepest", "kinetic_over_work")
+SWIFT, PATIENCE = 0.05, 20
 LEAST = 1e-4  # of the first step that was tried
 REJECT = 2.0  # of the tolerance: an error from which a step is made again
 CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver")  # what a shorter step may cure
@@ -45,7 +49,7 @@ class Implicit:
 
     def begin(self) -> dict:
         """What a run counts, and what its next step is to be: steps made again for their error (rejected) or cut (failed), sums, extrema."""
-        return {"next": self.first, "last": 0.0, "again": 0, "rejected": 0, "failed": 0, "iterations": 0, "shifts": 0, "deepest": 0.0}
+        return {"next": self.first, "last": 0.0, "again": 0, "work": 0.0, "swift": 0} | dict.fromkeys(TOLD, 0)
 
     def advance(self, *given) -> Outcome:
         """See `advance`."""
@@ -64,7 +68,7 @@ def advance(scene, clock, guards, buffers, until: float, warm, recorder, look) -
         error, found = one_step(scene, clock, buffers, dt, warm)
         if not found.ok or too_far(scene, told, error):
             told = put_back(scene, clock, before)
-            if not found.ok and (dt * CUT < LEAST * scene.implicit.first or found.kind not in CURED):
+            if not found.ok and (dt * CUT < LEAST * scene.implicit.first or found.kind not in CURED or told["swift"] >= PATIENCE):
                 return found
             told["failed" if not found.ok else "rejected"] += 1
             told["again"], told["next"] = int(found.ok), dt * (factor(scene.implicit, error) if found.ok else CUT)
@@ -147,12 +151,24 @@ def mechanical_step(scene, clock, dt: float) -> tuple[float, Outcome]:
         report[STEP] = 0
         return error, outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
     clock.gather(dt)
+    told["work"] += abs(float(np.sum(nodes.push * answer.u)))
+    kinetic = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)) / max(told["work"], 1e-300)
+    told["kinetic_over_work"] = kinetic
+    told["swift"] = told["swift"] + 1 if kinetic > SWIFT and report[DISSIPATED] > 0 and rate_independent(body.flow) else 0
+    if told["swift"] > PATIENCE:
+        said = f"(inertia carries it: energy of motion is {100 * kinetic:.0f} % of the work of gravity and loads)"
+        return error, outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail=said)
     told["deepest"] = max(told["deepest"], float(answer.depth.max(initial=0.0)))
     if scene.meeting is not None:
         for row in np.unique(pushed.row[answer.depth > 0]):
             touched = scene.meeting.touched(0, int(row))
             touched[np.unique(pushed.piece[(answer.depth > 0) & (pushed.row == row)])] += dt
     return error, outcome(COMPLETED)
+
+
+def rate_independent(flow) -> bool:
+    """Whether a material flows at once, whatever the rate."""
+    return isinstance(flow, EllipseRadial) and isinstance(flow.eta, Constant) and flow.eta.constant == 0
 
 
 def signed(nodes, u: np.ndarray) -> np.ndarray:

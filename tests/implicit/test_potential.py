@@ -10,22 +10,11 @@ from mpm.implicit.newton import Problem
 from mpm.implicit.nodes import new_nodes
 from mpm.scene.build import build
 
-SCENE = {
-    "grid": {"dimension": "axisymmetric", "size": [8e-3, 8e-3], "cell": 1e-3},
-    "bodies": {"disc": {"shape": {"cylinder": {"radius": 3.3e-3, "height": 2.7e-3, "base": [0, 0.02e-3]}}, "material": "dough"}},
-    "materials": {"dough": {"density": 1000, "elastic": {"hencky": {"E": 1e4, "nu": 0.2}}, "flow": {"ellipse": {"M": 300, "p0": 2, "eta": 50}}}},
-    "walls": {"bottom": {"contact": {"friction": float("inf")}}},
-    "gravity": [0, -9.81],
-    "loads": [{"of": "disc", "side": "top", "traction": {"nominal": [0, -20]}}, {"of": "disc", "drag": {"rate": 3.0}}],
-    "method": {"mechanics": "implicit"},
-    "time": {"end": 1.0},
-}
 
-
-def problem(dimension, seed=3):
+def problem(disc, dimension, seed=3):
     plane = {"grid": {"dimension": 2, "size": [8e-3, 8e-3], "cell": 1e-3},
              "bodies": {"disc": {"shape": {"box": {"lower": [1e-3, 0.02e-3], "upper": [4.3e-3, 2.7e-3]}}, "material": "dough"}}}  # fmt: skip
-    scene = build(mpm.load(SCENE | (plane if dimension == 2 else {})))
+    scene = build(mpm.load(disc | (plane if dimension == 2 else {})))
     body, rng = scene.bodies[0], np.random.default_rng(seed)
     body.particles.B[:] = rng.normal(scale=0.02, size=body.particles.B.shape)
     body.particles.v[:] = rng.normal(scale=1e-4, size=body.particles.v.shape)
@@ -40,8 +29,8 @@ def problem(dimension, seed=3):
 
 
 @pytest.mark.parametrize("dimension", ["axisymmetric", pytest.param(2, marks=pytest.mark.slow)])
-def test_gradient_and_hessian(dimension):
-    found, u = problem(dimension)
+def test_gradient_and_hessian(disc, dimension):
+    found, u = problem(disc, dimension)
     n, depth, eq = found.nodes.unknowns, np.zeros(len(found.pushed.owner)), found.nodes.eq
     free = eq >= 0
 
