@@ -24,10 +24,11 @@ from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import heat_step
 from mpm.integrate.sorting import Order
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
+from mpm.integrate.surroundings import jumps
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.memory import arrays, fill
-from mpm.observe import Recorder, stops
+from mpm.observe import Recorder, merged, stops
 from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, Thermal
 from mpm.total.drive import advance_references, present_limits, show_all, warm_references
@@ -154,7 +155,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
             keeper.save({"clock": vars(clock) | passed, **parts})
         return stop
 
-    for end, told in stops(scene.times, scene.watch.snapshots)[clock.output :]:
+    for end, told in stops(scene.times, merged(scene.watch.snapshots, jumps(scene.surroundings, scene.times[-1])))[clock.output :]:
         result = interval(scene, clock, recorder, guards, buffers, end, look)
         if not result.ok:
             break

@@ -1,12 +1,13 @@
 """Surfaces that exchange heat, and walls of the domain."""
 
-from typing import Annotated, ClassVar, Literal
+import math
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import create_model, model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
-from mpm.config.programmes import Programme
-from mpm.config.quantities import Emissivity, Exchange, Friction, HeatFlux
+from mpm.config.programmes import Beta, EmissivityProgramme, FluxProgramme, Moment, Programme
+from mpm.config.quantities import Friction
 
 Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral"], Choice()]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
@@ -19,14 +20,14 @@ EXCHANGES = ("convection", "flux", "fixed", "radiation")
 class Convection(Model):
     """Robin exchange: outward flux beta (T - outside)."""
 
-    beta: Exchange = doc(description="heat-transfer coefficient; .inf fixes the temperature of the surface")
+    beta: Beta = doc(description="heat-transfer coefficient; .inf fixes the temperature of the surface; may change over time")
     outside: Programme = doc(description="temperature of the surroundings; may change over time")
 
 
 class Flux(Model):
     """A given flux of heat."""
 
-    q: HeatFlux = doc(description="heat into the body, by area; negative cools")
+    q: FluxProgramme = doc(description="heat into the body, by area; negative cools; may change over time")
 
 
 class Fixed(Model):
@@ -38,11 +39,32 @@ class Fixed(Model):
 class Radiation(Model):
     """Grey radiation: outward flux sigma emissivity (T^4 - surroundings^4)."""
 
-    emissivity: Emissivity = doc(description="emissivity, from 0 to 1")
+    emissivity: EmissivityProgramme = doc(description="emissivity, from 0 to 1; may change over time")
     surroundings: Programme = doc(description="temperature of what surrounds the body; may change over time")
 
 
-class Surface(Model):
+Spell = create_model("Spell", __base__=Model, __module__=__name__, **{
+    "from": (Moment, doc(0.0, description="when it begins to act")),
+    "until": (Moment | None, doc(None, description="when it ends; with the run unless given")),
+})  # fmt: skip
+
+
+def spell(item: Any) -> tuple[float, float]:
+    """When an entry begins and ends to act [s]."""
+    return getattr(item, "from"), math.inf if item.until is None else item.until
+
+
+def ended(item: Any) -> Any:
+    """The entry, once it is known to end after it began."""
+    begin, end = spell(item)
+    if begin < 0:
+        raise problem("spell", "a run begins at 0", "at least 0 [s]", at=("from",))
+    if end <= begin:
+        raise problem("spell", "it would end before it begins", f"above {begin:g} [s]", at=("until",))
+    return item
+
+
+class Surface(Spell):
     """Part of a body's surface, chosen by its outward normal at the start, and how it exchanges heat."""
 
     of: str = doc(description="a name under bodies")
@@ -52,6 +74,11 @@ class Surface(Model):
     flux: Flux | None = doc(None, description="a given flux of heat")
     fixed: Fixed | None = doc(None, description="a given temperature")
     radiation: Radiation | None = doc(None, description="radiation to the surroundings")
+
+    @model_validator(mode="after")
+    def lasts(self) -> "Surface":
+        """It ends after it began."""
+        return ended(self)
 
     @model_validator(mode="after")
     def exchanges(self) -> "Surface":
@@ -64,7 +91,7 @@ class Surface(Model):
 class WallHeat(Model):
     """A hot wall (a pan): what touches it exchanges with it, and with nothing else."""
 
-    beta: Exchange = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at the wall's temperature")
+    beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at the wall's temperature")
     temperature: Programme = doc(description="temperature of the wall; may change over time")
 
 

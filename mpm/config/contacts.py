@@ -3,6 +3,7 @@
 from pydantic import model_validator
 
 from mpm.config.base import Model, doc, problem
+from mpm.config.boundary import Spell, ended
 from mpm.config.quantities import Exchange, Friction
 
 
@@ -10,7 +11,7 @@ class Nothing(Model):
     """No parameters: `stick: {}`."""
 
 
-class Pair(Model):
+class Pair(Spell):
     """How two bodies meet. A pair that is not named slides without friction and passes heat without resistance."""
 
     between: tuple[str, ...] = doc(description="two names under bodies", min_length=2, max_length=2)
@@ -20,6 +21,11 @@ class Pair(Model):
     conductance: Exchange | None = doc(
         None, description="heat that passes where they touch, by area and difference of temperature; without resistance (.inf) unless given"
     )
+
+    @model_validator(mode="after")
+    def lasts(self) -> "Pair":
+        """It ends after it began."""
+        return ended(self)
 
     @model_validator(mode="after")
     def one_kind(self) -> "Pair":

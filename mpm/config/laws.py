@@ -79,13 +79,13 @@ class Porosity(Kind):
     exponent: Annotated[float, Quantity("", "exponent", above=0, most=10)] = doc(2.0, description="exponent; about 2 in compacted powders")
 
 
-def of_unit(base: type[Kind], quantity: Quantity, /, **fields: Any) -> type[Kind]:
-    """A law's class for one quantity; a name of this module, so that experiments can be sent to other processes."""
+def of_unit(base: type[Kind], quantity: Quantity, home: dict[str, Any], /, **fields: Any) -> type[Kind]:
+    """A law's class for one quantity; a name of the module whose globals `home` are, so that experiments can be sent to other processes."""
     name = base.__name__ + "".join(letter for letter in quantity.name.title() if letter.isalpha())
-    made = create_model(name, __base__=base, __module__=__name__, **fields)
-    if name in globals():
+    made = create_model(name, __base__=base, __module__=home["__name__"], **fields)
+    if name in home:
         raise ValueError(f"two parameters are called {quantity.name!r}")
-    globals()[name] = made
+    home[name] = made
     return made
 
 
@@ -97,10 +97,10 @@ class Law(Menu):
         # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
         integral = quantity.unit.removesuffix("/K") if quantity.unit.endswith("/K") else f"{quantity.unit}*K" if quantity.unit else "K"
         area = Annotated[float, Quantity(integral, f"{quantity.name} times kelvin", least=0, difference=True)]
-        self.constant = of_unit(Constant, quantity, value=(value, ...))
-        table = of_unit(Table, quantity, value=(tuple[value, ...], ...))
-        bump = of_unit(Bump, quantity, base=(value, ...), heat=(area, ...))
-        logistic = of_unit(Logistic, quantity, low=(value, ...), high=(value, ...))
+        self.constant = of_unit(Constant, quantity, globals(), value=(value, ...))
+        table = of_unit(Table, quantity, globals(), value=(tuple[value, ...], ...))
+        bump = of_unit(Bump, quantity, globals(), base=(value, ...), heat=(area, ...))
+        logistic = of_unit(Logistic, quantity, globals(), low=(value, ...), high=(value, ...))
         super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic, *more)
         self.quantity = quantity
 

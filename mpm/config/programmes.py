@@ -1,39 +1,44 @@
-"""Temperatures over time: a number, or one of the kinds by which it may change (an oven programme).
+"""Quantities over time: a number, or one of the kinds by which it may change (an oven programme).
 
 Table   values over times, linear or PCHIP between them, constant outside       `outside: {table: {time: [0, 600], value: [20 degC, 190 degC]}}`
+        two values at one time are a jump                                       `beta: {table: {time: [0, 600, 600, 900], value: [10, 10, 40, 40]}}`
 Sine    mean + amplitude sin(2 pi t/period + phase)
 
 After validation a constant is a float, anything else one of these classes.
 """
 
+import math
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import model_validator
 from pydantic_core import core_schema
 
 from mpm.config.base import Choice, Kind, Menu, doc, problem
-from mpm.config.laws import Law
-from mpm.config.quantities import Angle, Quantity, Temperature, TemperatureDifference, Time
+from mpm.config.laws import Law, of_unit
+from mpm.config.quantities import Angle, Quantity, Time
 
 Moment = Annotated[float, Quantity("s", "time")]
 
 
 class TimeTable(Kind):
-    """Values over increasing times, constant before and after."""
+    """Values over increasing times, constant before and after; two values at one time are a jump."""
 
     kind: ClassVar[str] = "table"
-    time: tuple[Moment, ...] = doc(description="increasing times", min_length=2)
-    value: tuple[Temperature, ...] = doc(description="temperature at each time")
+    time: tuple[Moment, ...] = doc(description="increasing times; the same time twice is a jump from the first value to the second", min_length=2)
+    value: tuple[float, ...] = doc(description="value at each time")
     interpolation: Annotated[Literal["linear", "pchip"], Choice()] = doc("linear", description="between the entries: straight lines, or monotone cubics")
 
     @model_validator(mode="after")
     def shape(self) -> "TimeTable":
-        """As many values as times, times increasing."""
+        """As many values as times, times increasing or equal in pairs."""
         if len(self.time) != len(self.value):
             raise problem("table", f"{len(self.time)} times but {len(self.value)} values", "lists of the same length", at=("value",))
         for index, (low, high) in enumerate(zip(self.time, self.time[1:], strict=False)):
-            if high <= low:
-                raise problem("table", "times must increase", "each above the one before", at=("time", index + 1))
+            if high < low:
+                raise problem("table", "times must increase", "each above the one before, or the same once more for a jump", at=("time", index + 1))
+            if high == low and index and self.time[index - 1] == low:
+                raise problem("table", "the same time three times", "two values at a jump", at=("time", index + 1))
         return self
 
 
@@ -41,24 +46,33 @@ class Sine(Kind):
     """mean + amplitude sin(2 pi t/period + phase)."""
 
     kind: ClassVar[str] = "sine"
-    mean: Temperature = doc(description="temperature in the middle")
-    amplitude: TemperatureDifference = doc(description="half of the swing")
+    mean: float = doc(description="value in the middle")
+    amplitude: float = doc(description="half of the swing")
     period: Time = doc(description="time of one swing")
     phase: Angle = doc(0.0, description="phase at the start")
+    least: ClassVar[tuple[float, str]] = (-math.inf, "")
 
     @model_validator(mode="after")
-    def above_zero(self) -> "Sine":
-        """No temperature below absolute zero."""
-        if self.amplitude >= self.mean:
-            raise problem("sine", "the temperature would fall below absolute zero", f"below {self.mean:g} [K]", at=("amplitude",))
+    def above_least(self) -> "Sine":
+        """Nothing below what the quantity may be."""
+        least, said = self.least
+        if self.mean - self.amplitude < least or (self.amplitude >= self.mean and said == "absolute zero"):
+            raise problem("sine", f"the value would fall below {said}", f"below {self.mean - least:g}", at=("amplitude",))
         return self
 
 
 class ProgrammeMenu(Law):
-    """Annotation of a temperature that is a number or changes over time."""
+    """Annotation of a quantity that is a number or changes over time."""
 
     def __init__(self, quantity: Quantity):
-        Menu.__init__(self, f"programme of the {quantity.name}", TimeTable, Sine)
+        finite = replace(quantity, infinite=False)
+        least = 0.0 if quantity.above == 0 else quantity.least
+        swing = Annotated[float, Quantity(quantity.unit, f"{quantity.name} difference" if quantity.unit == "K" else quantity.name, above=0, difference=True)]
+        one = Annotated[float, finite]
+        table = of_unit(TimeTable, quantity, globals(), value=(tuple[one, ...], doc(description="value at each time")))
+        sine = of_unit(Sine, quantity, globals(), mean=(one, doc(description="value in the middle")), amplitude=(swing, doc(description="half of the swing")))
+        sine.least = (least, "absolute zero" if quantity.unit == "K" else f"{least:g}")
+        Menu.__init__(self, f"programme of the {quantity.name}", table, sine)
         self.quantity = quantity
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
@@ -77,4 +91,12 @@ class ProgrammeMenu(Law):
         return {**number, "anyOf": [*number["anyOf"], *Menu.__get_pydantic_json_schema__(self, schema, handler)["oneOf"]]}
 
 
-Programme = Annotated[float | TimeTable | Sine, ProgrammeMenu(Quantity("K", "temperature", above=0))]
+def programme(quantity: Quantity) -> Any:
+    """The type of a quantity that may change over time."""
+    return Annotated[float | TimeTable | Sine, ProgrammeMenu(quantity)]
+
+
+Programme = programme(Quantity("K", "temperature", above=0))
+Beta = programme(Quantity("W/m**2/K", "heat-transfer coefficient", least=0, infinite=True))
+FluxProgramme = programme(Quantity("W/m**2", "heat flux"))
+EmissivityProgramme = programme(Quantity("", "emissivity", least=0, most=1))

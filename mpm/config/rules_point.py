@@ -68,9 +68,14 @@ def exchange(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         if getattr(item, kind) is not None and kind not in EXCHANGED:
             said = f"a material point has no {kind}; its temperature may be prescribed in `loading`"
             yield Finding(("surfaces", index, kind), said, list(EXCHANGED), on_key=True)
-        elif getattr(item, kind) is not None and not isinstance(outside := getattr(getattr(item, kind), EXCHANGED[kind]), float):
+        elif getattr(item, kind) is not None:
             said = "what a material point meets is constant; a temperature over time may be prescribed in `loading`"
-            yield Finding(("surfaces", index, kind, EXCHANGED[kind]), said, "a number", given=type(outside).kind)
+            for key in type(getattr(item, kind)).model_fields:
+                if not isinstance(given := getattr(getattr(item, kind), key), float):
+                    yield Finding(("surfaces", index, kind, key), said, "a number", given=type(given).kind)
+    for key in ("from", "until"):
+        if getattr(item, key):
+            yield Finding(("surfaces", index, key), "what a material point meets acts from the start to the end", "no from and no until", on_key=True)
 
 
 def alone(experiment: Any) -> Iterator[Finding]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES
+from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES, spell
 from mpm.config.explain import Finding
 from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import near
@@ -151,7 +151,8 @@ def surface_conducts(experiment: Any, index: int, item: Any) -> Iterator[Finding
     name = experiment.bodies[item.of].material
     if experiment.materials[name].heat is None or conducts(experiment, name):
         return
-    acts = {"convection": item.convection and item.convection.beta, "fixed": item.fixed, "radiation": item.radiation and item.radiation.emissivity}
+    acts = {"convection": item.convection and item.convection.beta != 0.0, "fixed": item.fixed}
+    acts |= {"radiation": item.radiation and item.radiation.emissivity != 0.0}
     for key, acting in acts.items():
         if acting:
             said = f"{name!r} conducts no heat (kappa = 0): its surface would be as warm as what it meets at once, and pass nothing on"
@@ -183,7 +184,8 @@ def surface_twice(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
                 continue
             same = [name for name in alike if getattr(other, name) is not None and (before < index or name != kind)]
             both = sorted(covered(item.side, dimension) & covered(other.side, dimension))
-            if same and both:
+            (begin, end), (start, stop) = spell(item), spell(other)
+            if same and both and max(begin, start) < min(end, stop):
                 said = f"{item.of!r} has a {same[0]} there already, from surfaces.{before} (side {other.side})"
                 yield Finding(("surfaces", index, kind), said, f"one a side: join the two, or give each its own ({', '.join(both)})", on_key=True)
 
@@ -224,7 +226,11 @@ def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         yield Finding((*at, 1), "the same body twice: a body does not meet itself", [name for name in known if name != item.between[0]], given=item.between[1])
     elif any(frozenset(other.between) == frozenset(item.between) for other in experiment.contacts[:index] if other is not MISSING):
         yield Finding(at, "this pair is named before", "one entry a pair", on_key=True)
-    elif not moves(experiment):
+    elif moves(experiment):
+        for key in ("from", "until"):
+            if getattr(item, key):
+                yield Finding(("contacts", index, key), "bodies that move meet where their motion brings them together", "no from and no until", on_key=True)
+    else:
         for key in ("friction", "stick", "welded"):
             if getattr(item, key) not in (None, 0.0):
                 yield Finding(("contacts", index, key), "no body here has an elastic law, so nothing slides: only heat can pass", "conductance", on_key=True)
@@ -254,7 +260,7 @@ def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     elif item.heat is not None and not heats(experiment):
         said = "no body has heat, so nothing can be exchanged"
         yield Finding(("walls", side, item.kind, "heat"), said, "a heat section in the material of a body", on_key=True)
-    elif item.heat is not None and item.heat.beta > 0:
+    elif item.heat is not None and item.heat.beta != 0.0:
         for name in sorted({body.material for body in experiment.bodies.values()}):
             if experiment.materials[name].heat is not None and not conducts(experiment, name):
                 said = f"{name!r} conducts no heat (kappa = 0), so it can take none from the wall"

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from mpm.boundary import CONTACT, extents
-from mpm.heat.programmes import at
+from mpm.heat.programmes import at, changes, during, turns
 from mpm.state import PAD, Radiation
 
 REACH, FACING = 0.5, 0.5  # cells; cosine
@@ -25,14 +25,19 @@ MIRRORED = 1.0  # cells from a mirror wall in which a particle reaches the nodes
 
 @dataclass(frozen=True)
 class Act:
-    """One entry of the config on some pieces; outside and sky are numbers or programmes [K]."""
+    """One entry of the config on some pieces; every value is a number or a programme (mpm.heat.programmes)."""
 
     pieces: np.ndarray
-    beta: float = 0.0
+    beta: Any = 0.0
     outside: Any = 0.0
-    flux: float = 0.0
-    emissivity: float = 0.0
+    flux: Any = 0.0
+    emissivity: Any = 0.0
     sky: Any = 0.0
+
+    @property
+    def over_time(self) -> tuple:
+        """What may change."""
+        return self.beta, self.outside, self.flux, self.emissivity, self.sky
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ class HotWall:
 
     axis: int
     side: int
-    beta: float
+    beta: Any
     temperature: Any
     touched: Any = None  # (S,) time in touch since the last heat step [s]; None: a mirror
     tool: str = ""  # its name; nothing of a wall
@@ -60,10 +65,16 @@ class Surroundings:
     @property
     def steady(self) -> bool:
         """Whether one writing is enough."""
-        return not self.walls and all(isinstance(p, float | int) for act in self.acts for p in (act.outside, act.sky))
+        return not self.walls and not any(changes(one) for act in self.acts for one in act.over_time)
+
+    @property
+    def turns(self) -> set[float]:
+        """Times at which something jumps [s]."""
+        every = [one for act in self.acts for one in act.over_time] + [one for wall in self.walls for one in (wall.beta, wall.temperature)]
+        return {when for one in every for when in turns(one)}
 
     def write(self, space, body, start: float, dt: float) -> None:
-        """Surroundings of the heat step from `start` to `start + dt`."""
+        """Surroundings of the heat step from `start` to `start + dt`, within which nothing jumps: rates as they are in its middle."""
         if self.written and self.steady:
             return
         self.written = True
@@ -75,23 +86,30 @@ class Surroundings:
             radiation.emissivity[:] = 0.0
         for act in self.acts:
             p = act.pieces
-            surface.flux[p] += act.flux
-            if act.beta > 0:
-                beta = self.cap(act.beta)
-                first, last = (at(act.outside, t) - self.zero for t in (start, start + dt))
+            beta, flux, emissivity = (at(during(one, start), start + 0.5 * dt) for one in (act.beta, act.flux, act.emissivity))
+            outside, sky = during(act.outside, start), during(act.sky, start)
+            surface.flux[p] += flux
+            if beta > 0:
+                beta = self.cap(beta)
+                first, last = (at(outside, t) - self.zero for t in (start, start + dt))
                 share = beta / (surface.beta[p] + beta)
                 surface.outside[p] += share * (first - surface.outside[p])
                 surface.drift[p] += share * (last - first - surface.drift[p])
                 surface.beta[p] += beta
-            if act.emissivity > 0:
-                first, last = (at(act.sky, t) for t in (start, start + dt))
-                radiation.emissivity[p], radiation.sky[p], radiation.drift[p] = act.emissivity, first, last - first
+            if emissivity > 0:
+                first, last = (at(sky, t) for t in (start, start + dt))
+                radiation.emissivity[p], radiation.sky[p], radiation.drift[p] = emissivity, first, last - first
         for wall in self.walls:
             self.touch(wall, space, body, start, dt)
 
     def cap(self, beta: float) -> float:
         """beta, at most the penalty: what is finite and below it acts as it is given."""
         return min(beta, self.most)
+
+    def met(self, wall: HotWall, start: float, dt: float) -> tuple[float, float, float]:
+        """Temperature of a wall at both ends of a heat step, less zero, and its beta."""
+        temperature = during(wall.temperature, start)
+        return at(temperature, start) - self.zero, at(temperature, start + dt) - self.zero, self.cap(at(during(wall.beta, start), start + 0.5 * dt))
 
     def mirrors(self, space, body, kinds: np.ndarray) -> np.ndarray:
         """Kinds of the walls (3, 2) for heat: CONTACT, which mirrors nothing, where a wall is hot, and where pieces that exchange something lie on it."""
@@ -114,8 +132,10 @@ class Surroundings:
             self.share(wall, body.surface, start, dt)
             return
         surface, here = body.surface, facing(space, body, wall.axis, wall.side, REACH)
-        first, last = (at(wall.temperature, t) - self.zero for t in (start, start + dt))
-        surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = self.cap(wall.beta), first, last - first, 0.0
+        first, last, beta = self.met(wall, start, dt)
+        if beta == 0.0:
+            return
+        surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = beta, first, last - first, 0.0
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[here] = 0.0
 
@@ -125,8 +145,8 @@ class Surroundings:
         if len(s) == 0 or dt == 0.0:
             return
         part = np.minimum(wall.touched[s] / dt, 1.0)
-        beta, free = part * self.cap(wall.beta), 1.0 - part
-        first, last = (at(wall.temperature, t) - self.zero for t in (start, start + dt))
+        first, last, beta = self.met(wall, start, dt)
+        beta, free = part * beta, 1.0 - part
         both = free * surface.beta[s] + beta
         weight = beta / np.maximum(both, 1e-300)
         surface.outside[s] += weight * (first - surface.outside[s])
@@ -135,6 +155,12 @@ class Surroundings:
         surface.flux[s] *= free
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[s] *= free
+
+
+def jumps(surroundings, end: float) -> np.ndarray:
+    """Times before `end` at which what surrounds any body jumps: heat steps end there."""
+    every = {when for one in surroundings if one is not None for when in one.turns}
+    return np.array(sorted(when for when in every if 0 < when < end * (1 - 1e-9)))
 
 
 def facing(space, body, axis: int, side: int, within: float) -> np.ndarray:

@@ -125,10 +125,14 @@ class ChebyshevSteps(Enthalpy):
         super().__init__(system, tolerance)
         stiff = self.problem if len(system.hot) == 0 else self.problem._replace(on_theta=self.problem.on_theta + system.hot)
         self.radius = MARGIN * self.problem.table.steepest * spectral_radius(stiff, self.problem.table.conductivity)
-        self.rate = np.empty_like(self.state)
-        scratch = np.empty((2, len(self.state)))
-        self.taken = rate(self.problem, self.around(0.0), self.state, self.rate, scratch[0], scratch[1])
-        self.evaluations = 1
+        self.evaluations = 0
+        self.restart()
+
+    def restart(self) -> None:
+        """The rate of the state that it begins with."""
+        self.rate, scratch = np.empty_like(self.state), np.empty((2, len(self.state)))
+        self.taken = rate(self.problem, self.around(self.now), self.state, self.rate, scratch[0], scratch[1])
+        self.evaluations += 1
 
     def first_size(self, end: float) -> float:
         return min(end, FIRST / self.diffusion) if self.diffusion > 0 else end

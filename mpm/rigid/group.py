@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mpm.heat.programmes import SAME
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
 from mpm.rigid.coupling import couple
@@ -27,6 +28,12 @@ class Joint:
     first: int
     second: int
     conductance: float = np.inf
+    begin: float = 0.0  # [s]
+    end: float = np.inf
+
+    def acts(self, moment: float) -> bool:
+        """Whether they touch from then on; before and after nothing passes, and nothing is covered."""
+        return self.begin <= moment * (1 + SAME) and moment * (1 + SAME) < self.end
 
 
 @dataclass(frozen=True)
@@ -92,11 +99,11 @@ def triplets(given: np.ndarray, diff: np.ndarray, into: np.ndarray):
     return np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]]), np.concatenate([values, values[off]])
 
 
-def make_group(bodies, beside, joints, axisymmetric: bool, h: float, origin, end: float) -> Group:
+def make_group(bodies, beside, joints, axisymmetric: bool, h: float, origin, end: float, moment: float = 0.0) -> Group:
     """bodies: RigidBody each; beside: shapes that touch each; joints: Joint each, by number among the bodies."""
-    parts = tuple(make_system(body, axisymmetric, h, origin, end, others=others) for body, others in zip(bodies, beside, strict=True))
+    parts = tuple(make_system(body, axisymmetric, h, origin, end, others=others, moment=moment) for body, others in zip(bodies, beside, strict=True))
     into, size = numbers([part.geometry for part in parts])
-    return assembled(parts, into, [b.shape for b in bodies], tuple(joints), size, axisymmetric, h)
+    return assembled(parts, into, [b.shape for b in bodies], tuple(joints), size, axisymmetric, h, moment)
 
 
 def numbers(shaped: list[Geometry]) -> tuple[tuple[np.ndarray, ...], int]:
@@ -118,14 +125,15 @@ def numbers(shaped: list[Geometry]) -> tuple[tuple[np.ndarray, ...], int]:
     return tuple(place * most + rank for place, rank in zip(places, ranks, strict=True)), size * most
 
 
-def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: float) -> Group:
+def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: float, moment: float) -> Group:
     """The Group of bodies whose nodes have their numbers."""
     linear = all(isinstance(one, Constant) for p in parts for one in (p.kappa, p.alpha)) and not any(len(p.hot) for p in parts)
     fixed = [isinstance(p.kappa, Constant) for p in parts]
     conductivity = [max(value(p.kappa, p.coldest), value(p.kappa, p.hottest)) for p in parts]
     linked = [j for j in joints if j.conductance > 0]
+    now = [k for k, j in enumerate(linked) if j.acts(moment)]
     found = [couple(*((parts[b].geometry, conductivity[b], into[b]) for b in (j.first, j.second)), [shapes[j.first], shapes[j.second]], j.conductance,
-                    axisymmetric, h, not (fixed[j.first] and fixed[j.second])) for j in linked]  # fmt: skip
+                    axisymmetric, h, not (fixed[j.first] and fixed[j.second])) for j in (linked[k] for k in now)]  # fmt: skip
     diffs = [np.abs(columns - rows) for (rows, columns, _), _ in found]
     pieces = {name: [triplets(getattr(p.geometry, name), p.geometry.nodes.diff, i) for p, i in zip(parts, into, strict=True)] for name in ("mass", "stiffness")}
     exchange = [triplets(p.exchange, p.geometry.nodes.diff, i) for p, i in zip(parts, into, strict=True)]
@@ -158,21 +166,22 @@ def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: flo
     lead = max(parts, key=lambda p: p.stiff)
     zero, facing = lead.zero, spread([p.facing for p in parts])
     steady = spread([p.programmes.steady + (p.zero - zero) * (p.facing - sum(v for _, v in p.programmes.forcing)) for p in parts])
-    forcing = tuple((programme, spread([v if q is p else np.zeros(len(q.facing)) for q in parts])) for p in parts for programme, v in p.programmes.forcing)
+    forcing, given = (tuple((programme, spread([v if q is p else np.zeros(len(q.facing)) for q in parts])) for p in parts
+                            for programme, v in getattr(p.programmes, name)) for name in ("forcing", "given"))  # fmt: skip
     skies, radiants = (), []
     for p, i in zip(parts, into, strict=True):
         radiants.append(p.radiant._replace(index=i[p.radiant.index], sky=p.radiant.sky + len(skies)))
         skies += p.programmes.skies
     radiant = Radiant(*(np.concatenate([getattr(r, name) for r in radiants]) for name in ("index", "value", "weight", "sky")), float(zero))
     leaving = np.zeros((len(linked), size))
-    for row, (_, (number, flow)) in zip(leaving, found, strict=True):
-        np.add.at(row, number, flow)
+    for k, (_, (number, flow)) in zip(now, found, strict=True):
+        np.add.at(leaving[k], number, flow)
     joined = whole([*exchange, *(t for t, _ in found)])
     coldest, hottest = min(p.coldest for p in parts), max(p.hottest for p in parts)
     start, density = (spread([np.where(p.geometry.active, getattr(p, name), 0.0) for p in parts]) for name in ("start", "density"))
     return Group(
         geometry=shaped, density=1.0, kappa=Constant(1.0), alpha=Constant(1.0), start=start, field=None, zero=zero, exchange=joined, facing=facing,
-        programmes=Programmes(steady, forcing, skies, zero), radiant=radiant, hot=whole(hot) if any(len(p.hot) for p in parts) else np.zeros((0, 0)),
+        programmes=Programmes(steady, forcing, given, skies, zero), radiant=radiant, hot=whole(hot) if any(len(p.hot) for p in parts) else np.zeros((0, 0)),
         span=max(hottest - coldest, 1e-6 * max(abs(hottest), abs(coldest)), 1e-30), coldest=coldest, hottest=hottest, stiff=max(p.stiff for p in parts),
         bounds=(min(p.bounds[0] for p in parts), max(p.bounds[1] for p in parts)), parts=parts, into=into, owner=owner, leaving=leaving, joints=tuple(linked),
         density_of=density, blunt=not all(fixed),

@@ -1,17 +1,19 @@
 """Solve the heat equation in rigid bodies: choose a method, run each body, put the pieces together."""
 
+import functools
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from mpm.heat.programmes import SAME
 from mpm.materials.laws import Constant
 from mpm.outcome import COMPLETED, MAX_PRINCIPLE
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
 from mpm.rigid.gather import Part, Seat, gather
-from mpm.rigid.group import Group, Joint, groups, make_group
+from mpm.rigid.group import Group, groups, make_group
 from mpm.rigid.joined import JoinedLinear, JoinedNewton
 from mpm.rigid.linear import LinearSteps
 from mpm.rigid.newton import NewtonSteps
@@ -160,7 +162,9 @@ def solve(
         tries = ways([bodies[b] for b in members], method)
         for again in range(done.again if done is not None else before["again"] if cut is not None else 0, len(tries)):
             way, last = tries[again], again == len(tries) - 1
-            system, seats = system_of(bodies, members, joints, axisymmetric, h, origin, float(end), way.kind == "bounded")
+            jumps = turns_of(bodies, members, joints, float(end))
+            make = functools.partial(system_of, bodies, members, joints, axisymmetric, h, origin, float(end), way.kind == "bounded")
+            system, seats = make()
             steps = choose(system, way, float(end))
             mine, levels, rows = [], [], []
             for b, seat in zip(members, seats, strict=True):
@@ -171,7 +175,8 @@ def solve(
             inner = None if keeper is None else Within(keeper, [part.trace for part in parts], again, before["spent"], start)
             reach = limits(system, steps, way.step is not None, last)
             told = Whole() if len(members) == 1 else shares(system)
-            watch = Watch(times, joined(rows), levels, system.geometry.sight, shots, beat, inner, reach, told)
+            enter = functools.partial(entered, make, way, (0.0, *jumps), float(end))
+            watch = Watch(times, joined(rows), levels, system.geometry.sight, shots, beat, inner, reach, told, jumps, enter)
             trace = done or drive(steps, watch, float(end), system.geometry.volume, way.step, cut)
             trace.again, cut = again, None
             if trace.code != MAX_PRINCIPLE:
@@ -197,15 +202,35 @@ def shares(system: Group) -> Shares:
     return Shares(system.sums, np.cumsum([0, *(len(part.geometry.sight[0]) for part in system.parts[:-1])]))
 
 
-def system_of(bodies, members, joints, axisymmetric: bool, h: float, origin, end: float, hats: bool = False) -> tuple[System, list[Seat]]:
-    """The equations of one body, or of a group that conduct into one another, and where each body's unknowns are."""
-    beside = {b: tuple(bodies[j.second if j.first == b else j.first].shape for j in joints if b in (j.first, j.second)) for b in members}
+def turns_of(bodies, members, joints, end: float) -> tuple[float, ...]:
+    """Times within the run at which something about these bodies jumps [s]."""
+    every = {when for b in members for when in bodies[b].turns}
+    every |= {when for j in joints if {j.first, j.second} & {*members} for when in (j.begin, j.end)}
+    return tuple(sorted(when for when in every if 0 < when < end * (1 - SAME)))
+
+
+def entered(make, way: Method, moments, end: float, turn: int, before):
+    """The method from a turn on, with what `before` had reached."""
+    steps = choose(make(moment=moments[turn])[0], way, end)
+    for name in ("state", "q", "now"):
+        setattr(steps, name, getattr(before, name))
+    if isinstance(steps, ChebyshevSteps):
+        steps.restart()
+    return steps
+
+
+def system_of(
+    bodies, members, joints, axisymmetric: bool, h: float, origin, end: float, hats: bool = False, moment: float = 0.0
+) -> tuple[System, list[Seat]]:
+    """The equations from a moment on of one body, or of a group that conduct into one another, and where each body's unknowns are."""
+    touching = [j for j in joints if j.acts(moment)]
+    beside = {b: tuple(bodies[j.second if j.first == b else j.first].shape for j in touching if b in (j.first, j.second)) for b in members}
     if len(members) == 1:
         (b,) = members
-        system = make_system(bodies[b], axisymmetric, h, origin, end, hats, beside[b])
+        system = make_system(bodies[b], axisymmetric, h, origin, end, hats, beside[b], moment)
         return system, [Seat(bodies[b].shape, system.geometry)]
-    within = [Joint(members.index(j.first), members.index(j.second), j.conductance) for j in joints if j.first in members and j.second in members]
-    system = make_group([bodies[b] for b in members], [beside[b] for b in members], within, axisymmetric, h, origin, end)
+    within = [replace(j, first=members.index(j.first), second=members.index(j.second)) for j in joints if j.first in members and j.second in members]
+    system = make_group([bodies[b] for b in members], [beside[b] for b in members], within, axisymmetric, h, origin, end, moment)
     seats = [Seat(bodies[b].shape, part.geometry, into) for b, part, into in zip(members, system.parts, system.into, strict=True)]
     return system, seats
 

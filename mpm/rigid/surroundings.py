@@ -35,22 +35,25 @@ class Programmes(NamedTuple):
 
     steady: np.ndarray  # (N,) supply that never changes [W]
     forcing: tuple[tuple[Any, np.ndarray], ...]  # (programme, beta int N)
+    given: tuple[tuple[Any, np.ndarray], ...]  # (programme of a flux, int N)
     skies: tuple[Any, ...]
     zero: float
 
     @property
     def changes(self) -> bool:
-        return bool(self.forcing) or not all(isinstance(sky, float) for sky in self.skies)
+        return bool(self.forcing or self.given) or not all(isinstance(sky, float) for sky in self.skies)
 
     @property
     def longest(self) -> float:
         """No step may be longer, or it would miss what changes [s]."""
-        return min((longest(p) for p in (*(p for p, _ in self.forcing), *self.skies)), default=np.inf)
+        return min((longest(p) for p in (*(p for p, _ in (*self.forcing, *self.given)), *self.skies)), default=np.inf)
 
     def around(self, t: float) -> Around:
         supply = self.steady
         for programme, facing in self.forcing:
             supply = supply + (at(programme, t) - self.zero) * facing
+        for programme, area in self.given:
+            supply = supply + at(programme, t) * area
         return Around(supply, float(supply.sum()), np.array([at(sky, t) for sky in self.skies], dtype=float))
 
 

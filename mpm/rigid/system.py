@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
-from mpm.heat.programmes import at, bounds
+from mpm.heat.programmes import at, bounds, during, turns
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
 from mpm.rigid.geometry import Geometry, evaluated, geometry
@@ -26,7 +26,8 @@ PENALTY = 1e5
 class RigidBody:
     """A body that does not move. `surfaces`: (side, beta >= 0 or inf [W/(m2 K)], outside [K]) each; the rest is insulated.
 
-    fluxes: (side, q into the body [W/m2]); radiation: (side, emissivity, surroundings [K]); outside and surroundings are numbers or mpm.heat.programmes.
+    fluxes: (side, q into the body [W/m2]); radiation: (side, emissivity, surroundings [K]). All are numbers or mpm.heat.programmes, but that beta and
+    emissivity do not change between jumps.
     field: temperatures at the start at points (P, d) -> (P,), where they are not the same everywhere.
 
     shape: mpm.scene.shapes; temperature [K] at the start; density [kg/m3]; kappa [W/(m K)], alpha [J/(kg K)]: numbers or mpm.materials.laws.
@@ -37,10 +38,15 @@ class RigidBody:
     density: float
     kappa: Any
     alpha: Any
-    surfaces: tuple[tuple[str, float, Any], ...] = ()
-    fluxes: tuple[tuple[str, float], ...] = ()
-    radiation: tuple[tuple[str, float, Any], ...] = ()
+    surfaces: tuple[tuple[str, Any, Any], ...] = ()
+    fluxes: tuple[tuple[str, Any], ...] = ()
+    radiation: tuple[tuple[str, Any, Any], ...] = ()
     field: Any = None
+
+    @property
+    def turns(self) -> set[float]:
+        """Times at which something jumps [s]."""
+        return {when for entry in (*self.surfaces, *self.fluxes, *self.radiation) for one in entry[1:] for when in turns(one)}
 
 
 @dataclass(frozen=True)
@@ -70,25 +76,31 @@ def law(given):
     return Constant(float(given)) if isinstance(given, int | float) else given
 
 
-def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False, others: tuple = ()) -> System:
-    """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps; `others`: shapes that touch it."""
+def make_system(
+    body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False, others: tuple = (), moment: float = 0.0
+) -> System:
+    """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps; `others`: shapes that touch it; `moment`: of the
+    run [s], for what jumps. The range of temperatures and `zero` are those of the whole run."""
     kappa, alpha = law(body.kappa), law(body.alpha)
     sides = tuple(entry[0] for entry in (*body.surfaces, *body.fluxes, *body.radiation))
     place = body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides
     shaped = (hat_geometry if hats else geometry)(*place, others)
     n = len(body.surfaces)
-    betas = [float(beta) for _, beta, _ in body.surfaces]
-    around = [outside for _, beta, outside in body.surfaces if beta > 0] + [sky for _, emissivity, sky in body.radiation if emissivity > 0]
+    most = [float(bounds(beta)[1]) for _, beta, _ in body.surfaces]
+    around = [outside for (_, _, outside), beta in zip(body.surfaces, most, strict=True) if beta > 0]
+    around += [sky for _, emissivity, sky in body.radiation if bounds(emissivity)[1] > 0]
     data = [float(t) for t in (body.temperature, *(t for one in around for t in bounds(one)))]
     if body.field is not None:
         data += [float(t) for t in (np.min(body.field(shaped.x)), np.max(body.field(shaped.x)))]
     conductivity = max(value(kappa, t) for t in data)
-    betas = [PENALTY * conductivity / h if math.isinf(beta) else beta for beta in betas]
+    betas = [during(beta, moment) for _, beta, _ in body.surfaces]
+    most, betas = ([PENALTY * conductivity / h if math.isinf(beta) else beta for beta in those] for those in (most, betas))
     depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
-    stiffest = int(np.argmax(betas)) if betas else 0
-    zero = float(at(body.surfaces[stiffest][2], 0.0)) if betas and betas[stiffest] * depth > conductivity else float(body.temperature)
+    stiffest = int(np.argmax(most)) if most else 0
+    zero = float(at(body.surfaces[stiffest][2], 0.0)) if most and most[stiffest] * depth > conductivity else float(body.temperature)
     exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
     for k, ((_, _, outside), beta, stencil, area) in enumerate(zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False)):
+        outside = during(outside, moment)
         if beta > 0:
             beta = over_depth(beta, shaped.depth[k], conductivity) if hats else beta
             exchange += beta * stencil
@@ -97,30 +109,37 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
                 steady += beta * (outside - zero) * area
             else:
                 forcing.append((outside, beta * area))
-    low, high = min(data), max(data)
-    between = (-math.inf if any(q < 0 for _, q in body.fluxes) else low, math.inf if any(q > 0 for _, q in body.fluxes) else high)
-    for (_, q), area in zip(body.fluxes, shaped.area[n:], strict=False):
-        steady += q * area
-        rise = abs(q) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
-        steep = abs(q) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
-        data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if q > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
-    radiant, hot = radiating(body, shaped, zero, n + len(body.fluxes), max(data))
+    low, high, given = min(data), max(data), []
+    ends = [bounds(q) for _, q in body.fluxes]
+    between = (-math.inf if any(least < 0 for least, _ in ends) else low, math.inf if any(greatest > 0 for _, greatest in ends) else high)
+    for (_, q), (least, greatest), area in zip(body.fluxes, ends, shaped.area[n:], strict=False):
+        now = during(q, moment)
+        if isinstance(now, int | float):
+            steady += now * area
+        else:
+            given.append((now, area))
+        for extreme in {least, greatest} - {0.0}:
+            rise = abs(extreme) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
+            steep = abs(extreme) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
+            data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if extreme > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
+    radiant, hot = radiating(body, shaped, zero, n + len(body.fluxes), max(data), moment)
     span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
-    skies = tuple(float(sky) if isinstance(sky, int | float) else sky for _, _, sky in body.radiation)
-    programmes = Programmes(steady, tuple(forcing), skies, zero)
+    skies = tuple(float(sky) if isinstance(sky, int | float) else sky for sky in (during(sky, moment) for _, _, sky in body.radiation))
+    programmes = Programmes(steady, tuple(forcing), tuple(given), skies, zero)
     return System(
         shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
         max(data), stiff, between,
     )  # fmt: skip
 
 
-def radiating(body: RigidBody, shaped: Geometry, zero: float, first: int, hottest: float) -> tuple[Radiant, np.ndarray]:
+def radiating(body: RigidBody, shaped: Geometry, zero: float, first: int, hottest: float, moment: float) -> tuple[Radiant, np.ndarray]:
     """Points that radiate, and the stencil of their slope at the hottest temperature; `first`: number of the first radiating surface."""
     splines = len(shaped.nodes.local)
     parts = [(np.zeros((0, splines), dtype=np.int64), np.zeros((0, splines)), np.zeros(0), np.zeros(0, dtype=np.int64))]
     hot = np.zeros_like(shaped.mass) if body.radiation else np.zeros((0, 0))
     for k, (_, emissivity, _) in enumerate(body.radiation):
+        emissivity = during(emissivity, moment)
         x, w = shaped.faces[first + k]
         index, spline = evaluated(shaped.nodes, x)
         parts.append((index, spline, STEFAN_BOLTZMANN * emissivity * w, np.full(len(w), k)))

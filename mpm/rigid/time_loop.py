@@ -66,6 +66,8 @@ class Watch:
     keeper: object = None  # mpm.memory
     limits: tuple[float, float] = (-math.inf, math.inf)  # of theta - zero, beyond which a record ends the run [K]
     told: object = field(default_factory=Whole)  # or Shares
+    turns: tuple[float, ...] = ()  # times at which something jumps: steps end there, and enter(number, method) goes on [s]
+    enter: object = None
 
 
 @dataclass
@@ -158,22 +160,28 @@ def begun(method, watch: Watch, ahead, weight) -> tuple:
     return trace, 0.0, first, shown, seen
 
 
+def planned(method, left: float, fixed: float | None) -> tuple[int, float]:
+    """How many steps to what is ahead, and their size, to begin with."""
+    count = max(1, math.ceil(left / (fixed or min(method.first_size(left), method.longest)) * (1 - 1e-9)))
+    return count, left / count
+
+
 def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, before: dict | None = None) -> Trace:
     """Runs `method` to `end`; `fixed` sets the step and leaves the error unchecked; where no such step can be taken, a shorter one is.
 
     before: what `watch.keeper` was given when the run was cut.
     """
-    ahead = np.asarray(watch.times, dtype=float)
+    ahead, goals, turn = np.asarray(watch.times, dtype=float), [*watch.turns, end], 0
     if before is None:
         trace, t, first, shown, seen = begun(method, watch, ahead, weight)
-        wanted = fixed or min(method.first_size(end), method.longest)
-        count = max(1, math.ceil((end - t) / wanted * (1 - 1e-9)))
-        dt = (end - t) / count
+        count, dt = planned(method, goals[0] - t, fixed)
     else:
+        turn = before["turn"]
+        method = watch.enter(turn, method) if turn else method
         vars(method).update(before["method"])
         trace, seen = Trace.recalled(before["trace"]), before["seen"]
         t, count, dt, first, shown = (before[name] for name in ("t", "count", "dt", "first", "shown"))
-    state = method.state
+    state, goal = method.state, goals[turn]
     while count > 0:
         error = method.attempt(dt)
         if fixed:
@@ -181,15 +189,15 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
         if not (error <= 1.0 or (math.isfinite(error) and dt <= method.floor)):
             trace.rejected += 1
             factor = max(SHRINK, SAFETY * error ** (-1 / method.power)) if math.isfinite(error) else 0.5 if fixed else SHRINK
-            count = math.ceil((end - t) / max(dt * factor, 0.0 if fixed else min(method.floor, 0.9 * dt)))
-            dt = (end - t) / count
+            count = math.ceil((goal - t) / max(dt * factor, 0.0 if fixed else min(method.floor, 0.9 * dt)))
+            dt = (goal - t) / count
             if dt < FEWEST * end:
                 trace.code = STEP_UNDERFLOW if math.isfinite(error) else NON_FINITE
                 break
             continue
         method.accept()
         before, state, count = state, method.state, count - 1
-        new = end if count == 0 else t + dt
+        new = goal if count == 0 else t + dt
         if first < len(ahead) and ahead[first] <= new * (1 + 1e-14):
             last = int(np.searchsorted(ahead, new * (1 + 1e-14), side="right"))
             basis, columns, exchanged = method.dense((np.minimum(ahead[first:last], new) - t) / dt)
@@ -212,19 +220,24 @@ def drive(method, watch: Watch, end: float, weight, fixed: float | None = None, 
         trace.steps += 1
         trace.smallest, trace.largest = min(trace.smallest, dt), max(trace.largest, dt)
         if count and fixed and dt < fixed * (1 - 1e-9):  # back to the size that was asked for
-            count = max(1, math.ceil((end - t) / min(2 * dt, fixed) * (1 - 1e-9)))
-            dt = (end - t) / count
+            count = max(1, math.ceil((goal - t) / min(2 * dt, fixed) * (1 - 1e-9)))
+            dt = (goal - t) / count
         if count and not fixed:
             factor = min(GROW, SAFETY * max(error, 1e-9) ** (-1 / method.power))
             wanted = min(max(dt * factor, min(method.floor, dt)), method.longest)
-            fewer = max(1, math.ceil((end - t) / wanted))
+            fewer = max(1, math.ceil((goal - t) / wanted))
             if not method.replan or count - fewer > 2 or factor < 0.9:
                 count = fewer
-                dt = (end - t) / count
+                dt = (goal - t) / count
+        if count == 0 and turn + 1 < len(goals):
+            turn += 1
+            goal, method = goals[turn], watch.enter(turn, method)
+            count, dt = planned(method, goal - t, fixed)
         stop = watch.stop is not None and watch.stop(t / end, t)
         if watch.keeper is not None and count and watch.keeper.due(stop):
             carried = {name: getattr(method, name) for name in method.CARRIES}
-            watch.keeper.save({"t": t, "count": count, "dt": dt, "first": first, "shown": shown, "seen": seen, "trace": trace.memory(), "method": carried})
+            where = {"turn": turn, "t": t, "count": count, "dt": dt, "first": first, "shown": shown, "seen": seen}
+            watch.keeper.save({**where, "trace": trace.memory(), "method": carried})
         if stop:
             trace.code = BUDGET if count else COMPLETED
             break

@@ -1,9 +1,11 @@
 """Surfaces of a config: which pieces of a moving body exchange heat, with what, and the run-time programmes of temperatures over time."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from mpm.heat.exchange import PENALTY
-from mpm.heat.programmes import Sine, bounds
+from mpm.heat.programmes import Parts, Sine, bounds, during, spell, turns
 from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
 from mpm.scene.menus import acting, known
@@ -11,10 +13,22 @@ from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
 
-PROGRAMMES = {
-    "table": lambda model: table(model.time, model.value, model.interpolation),
-    "sine": lambda model: Sine(model.mean, model.amplitude, model.period, model.phase),
-}
+
+def table_over_time(model):
+    """A table, or one after another where it jumps; a part of one entry is a number."""
+    ends = [k + 1 for k, (a, b) in enumerate(zip(model.time, model.time[1:], strict=False)) if a == b]
+    parts = [(model.time[a:b], model.value[a:b]) for a, b in pairwise([0, *ends, len(model.time)])]
+    made = tuple(table(when, values, model.interpolation) if len(when) > 1 else float(values[0]) for when, values in parts)
+    return Parts(tuple(model.time[end] for end in ends), tuple(map(flat, made))) if ends else made[0]
+
+
+def flat(programme):
+    """A table that has one value is a number."""
+    low, high = bounds(programme)
+    return low if low == high else programme
+
+
+PROGRAMMES = {"table": table_over_time, "sine": lambda model: Sine(model.mean, model.amplitude, model.period, model.phase)}
 
 
 def programme(model):
@@ -24,16 +38,27 @@ def programme(model):
     return known(PROGRAMMES, type(model).kind, "programme")(model)
 
 
+def rates(entry, role: str):
+    """[(rate, outside)] of what a surface entry does in one role (mpm.scene.menus), 0 before `from` and after `until`."""
+    return [(spell(programme(part.rate), getattr(entry, "from"), entry.until), part.outside if part.outside is None else programme(part.outside))
+            for part in acting(entry, role)]  # fmt: skip
+
+
 def robin(entry):
     """[(beta, outside)] of a surface entry: convection, or a fixed temperature (beta = inf); a list, empty where it has neither."""
-    return [(part.rate, programme(part.outside)) for part in acting(entry, "robin")]
+    return rates(entry, "robin")
+
+
+def most(rate) -> float:
+    """The largest size that a rate ever has."""
+    return max(abs(bound) for bound in bounds(rate))
 
 
 def acts_of(entry, pieces) -> list[Act]:
     """What one surface entry does to `pieces`."""
-    acts = [Act(pieces, beta=beta, outside=outside) for beta, outside in robin(entry) if beta > 0]
-    acts += [Act(pieces, flux=part.rate) for part in acting(entry, "flux") if part.rate != 0]
-    return acts + [Act(pieces, emissivity=part.rate, sky=programme(part.outside)) for part in acting(entry, "grey") if part.rate > 0]
+    acts = [Act(pieces, beta=beta, outside=outside) for beta, outside in robin(entry) if most(beta) > 0]
+    acts += [Act(pieces, flux=flux) for flux, _ in rates(entry, "flux") if most(flux) > 0]
+    return acts + [Act(pieces, emissivity=emissivity, sky=sky) for emissivity, sky in rates(entry, "grey") if most(emissivity) > 0]
 
 
 def hot_walls(experiment, sides) -> list[HotWall]:
@@ -41,10 +66,15 @@ def hot_walls(experiment, sides) -> list[HotWall]:
     found = []
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
-        if heat is not None and heat.beta > 0:
-            found.append(HotWall(number // 2, number % 2, heat.beta, programme(heat.temperature)))
-    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and tool.heat.beta > 0]
-    return found + [HotWall(-1, -1, heat.beta, programme(heat.temperature), tool=name) for name, heat in hot]
+        if heat is not None and most(beta := programme(heat.beta)) > 0:
+            found.append(HotWall(number // 2, number % 2, beta, programme(heat.temperature)))
+    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and most(programme(tool.heat.beta)) > 0]
+    return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name) for name, heat in hot]
+
+
+def twice(pieces: list[np.ndarray]) -> bool:
+    """Whether a piece is in more than one of them."""
+    return len(pieces) > 0 and len(np.unique(np.concatenate(pieces))) < sum(map(len, pieces))
 
 
 def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:
@@ -67,15 +97,16 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
         return pieces_of(cut, kept, thermal.theta.dtype, NoRadiation()) if meets else NoExchange(), None, kept
     kept = np.arange(len(cut.owner)) if walls or meets else np.unique(np.concatenate([act.pieces for act in acts]))
     acts = [Act(np.searchsorted(kept, act.pieces), act.beta, act.outside, act.flux, act.emissivity, act.sky) for act in acts]
-    radiating = [act for act in acts if act.emissivity > 0]
-    if len(np.unique(np.concatenate([act.pieces for act in radiating] or [kept[:0]]))) < sum(len(act.pieces) for act in radiating):
+    radiating = [act for act in acts if most(act.emissivity) > 0]
+    times = sorted({0.0, *(when for act in radiating for when in turns(act.emissivity))})
+    if any(twice([act.pieces for act in radiating if most(during(act.emissivity, when)) > 0]) for when in times):
         raise SceneError(("surfaces",), f"two surface entries of {name} radiate from the same place: merge them into one")
-    around = [act.outside for act in acts if act.beta > 0] + [wall.temperature for wall in walls]
+    around = [act.outside for act in acts if most(act.beta) > 0] + [wall.temperature for wall in walls]
     seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
-    most = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
-    must_conduct(name, most > 0, any(act.beta > 0 for act in (*acts, *walls)) or bool(radiating))
+    penalty = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
+    must_conduct(name, penalty > 0, any(most(act.beta) > 0 for act in (*acts, *walls)) or bool(radiating))
     radiation = Radiation(np.zeros(len(kept)), np.ones(len(kept)), np.zeros(len(kept))) if radiating else NoRadiation()
-    return pieces_of(cut, kept, thermal.theta.dtype, radiation), Surroundings(acts, walls, zero, most), kept
+    return pieces_of(cut, kept, thermal.theta.dtype, radiation), Surroundings(acts, walls, zero, penalty), kept
 
 
 def pieces_of(cut, kept: np.ndarray, dtype, radiation) -> Surface:

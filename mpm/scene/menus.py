@@ -12,10 +12,10 @@ from mpm.scene.refusal import SceneError
 
 
 class Part(NamedTuple):
-    """One exchange as every solver takes it: coefficient and what is outside (a number or a programme of the config)."""
+    """One exchange as every solver takes it: coefficient and what is outside (numbers or programmes of the config)."""
 
     role: str  # robin: beta (outside - T); flux: q; grey: sigma emissivity (outside^4 - T^4)
-    rate: float  # beta [W/(m2 K)], q [W/m2] or emissivity
+    rate: Any  # beta [W/(m2 K)], q [W/m2] or emissivity
     outside: Any = None
 
 

@@ -4,13 +4,12 @@ import time
 
 import numpy as np
 
-from mpm.heat.programmes import bounds
+from mpm.heat.programmes import Parts, bounds, changes
 from mpm.materials import value
 from mpm.observe import merged, near
 from mpm.scene.build import SceneError, output_times, watch
-from mpm.scene.exchange import must_conduct, programme, robin
+from mpm.scene.exchange import most, must_conduct, rates, robin
 from mpm.scene.law import law
-from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.scene.still import joints, refuse_covered
 from mpm.state import Run
@@ -34,14 +33,25 @@ def rigid_bodies(experiment, field=None) -> list:
             raise SceneError(("materials", body.material), f"it has neither `elastic` nor `heat`: nothing would happen in {name}")
         entries = [entry for entry in experiment.surfaces if entry.of == name]
         surfaces = tuple((entry.side, beta, outside) for entry in entries for beta, outside in robin(entry))
-        fluxes = tuple((entry.side, part.rate) for entry in entries for part in acting(entry, "flux"))
-        radiation = tuple((entry.side, part.rate, programme(part.outside)) for entry in entries for part in acting(entry, "grey"))
+        fluxes = tuple((entry.side, flux) for entry in entries for flux, _ in rates(entry, "flux"))
+        radiation = tuple((entry.side, emissivity, sky) for entry in entries for emissivity, sky in rates(entry, "grey"))
+        refuse_gradual(experiment)
         outline = shape(body.shape, experiment.grid.dimension)
         kappa, alpha = law(material.heat.kappa), law(material.heat.alpha)
-        around = [outside for _, beta, outside in surfaces if beta > 0] + [sky for _, emissivity, sky in radiation if emissivity > 0]
+        around = [outside for _, rate, outside in (*surfaces, *radiation) if most(rate) > 0]
         must_conduct(name, any(value(kappa, t) > 0 for t in (body.temperature, *(t for one in around for t in bounds(one)))), bool(around))
         bodies.append(RigidBody(outline, body.temperature, material.density, kappa, alpha, surfaces, fluxes, radiation, field))
     return bodies
+
+
+def refuse_gradual(experiment) -> None:
+    """SceneError for a beta or an emissivity that changes between jumps: the matrices of a body that does not move are made for numbers."""
+    for index, entry in enumerate(experiment.surfaces):
+        for kind, role in (("beta", "robin"), ("emissivity", "grey")):
+            for rate, _ in rates(entry, role):
+                if any(changes(part) for part in (rate.parts if isinstance(rate, Parts) else (rate,))):
+                    said = "changes gradually, which bodies that do not move cannot follow: let it jump (the same time twice in its table)"
+                    raise SceneError(("surfaces", index), f"{kind} {said}, or give the material `elastic`")
 
 
 def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=None) -> Run:

@@ -13,7 +13,7 @@ from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import bounds
 from mpm.materials import HenckyWarm, value
 from mpm.materials.porous import aspect
-from mpm.scene.exchange import programme, robin
+from mpm.scene.exchange import most, programme, rates, robin
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
@@ -131,7 +131,7 @@ def temperatures(experiment, name: str) -> list[tuple[float, float]]:
     found = [(body.temperature,) * 2 for body in experiment.bodies.values()]
     for entry in experiment.surfaces:
         if entry.of == name:
-            found += [bounds(outside) for beta, outside in robin(entry) if beta > 0]
+            found += [bounds(outside) for beta, outside in robin(entry) if most(beta) > 0]
             found += [bounds(programme(part.outside)) for part in acting(entry, "grey")]
     found += [bounds(programme(wall.heat.temperature)) for wall in experiment.walls.values() if wall.heat is not None]
     found += [(stage.temperature,) * 2 for stage in experiment.loading if stage.temperature is not None]
@@ -167,7 +167,7 @@ def of_body(experiment, name: str) -> Scales:
         volume, surface, extent, reach, exchanges = shaped(experiment, name, high)
         height = along(experiment, extent)
     material = experiment.materials[body.material]
-    rise = sum(abs(part.rate) for entry in experiment.surfaces if entry.of == name for part in acting(entry, "flux")) * surface * experiment.time.end
+    rise = sum(most(flux) for entry in experiment.surfaces if entry.of == name for flux, _ in rates(entry, "flux")) * surface * experiment.time.end
     if rise and material.heat is not None:
         alpha = ends(material.heat.alpha, low, high)[0]
         low, high = low - rise / (volume * material.density * alpha), high + rise / (volume * material.density * alpha)
@@ -206,11 +206,12 @@ def depth(outline, rim: np.ndarray, seen: np.ndarray) -> float:
 
 def exchanging(entry, area: float, high: float) -> list[Exchanging]:
     """What one surface entry exchanges by; a flux has no coefficient."""
-    found = [Exchanging(entry.side, beta, area, *bounds(outside), isinstance(outside, float)) for beta, outside in robin(entry) if beta > 0 and area > 0]
-    for part in acting(entry, "grey") if area > 0 else ():
-        low, most = bounds(programme(part.outside))
-        slope = 4 * STEFAN_BOLTZMANN * part.rate * max(high, most) ** 3
-        found += [Exchanging(entry.side, slope, area, low, most, False)] if part.rate > 0 else []
+    found = [Exchanging(entry.side, most(beta), area, *bounds(outside), isinstance(outside, float) and isinstance(beta, float))
+             for beta, outside in robin(entry) if most(beta) > 0 and area > 0]  # fmt: skip
+    for emissivity, sky in rates(entry, "grey") if area > 0 else ():
+        low, hottest = bounds(sky)
+        slope = 4 * STEFAN_BOLTZMANN * most(emissivity) * max(high, hottest) ** 3
+        found += [Exchanging(entry.side, slope, area, low, hottest, False)] if most(emissivity) > 0 else []
     return found
 
 

@@ -20,6 +20,7 @@ from mpm.warned import warning
 FROUDE, KINETIC = 0.02, 0.05
 VALUES = {"constant": ("value",), "table": ("value",), "bump": ("base", "heat"), "logistic": ("low", "high")}  # fields of a law of temperature
 MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
+RATES = {"table": ("value",), "sine": ("mean", "amplitude")}  # its values
 EXCHANGE = {  # the field that is a rate, and the field of the temperature outside
     "convection": ("beta", "outside"),
     "flux": ("q", None),
@@ -46,15 +47,20 @@ def law_times(law, factor: float):
 
 
 def sooner(programme, S: float):
-    """A temperature over time on the fast clock."""
+    """What changes over time, on the fast clock."""
     return programme if isinstance(programme, float | int) else changed(programme, 1 / S, *MOMENTS[type(programme).kind])
+
+
+def faster(programme, S: float):
+    """A rate, S times larger and on the fast clock."""
+    return programme * S if isinstance(programme, float | int) else changed(sooner(programme, S), S, *RATES[type(programme).kind])
 
 
 def exchange(model, S: float, rate: str, temperature: str | None):
     """One exchange of a surface or a wall: its rate, and its temperature over time."""
     if model is None:
         return None
-    model = changed(model, S, rate) if rate else model
+    model = model.model_copy(update={rate: faster(getattr(model, rate), S)}) if rate else model
     return model.model_copy(update={temperature: sooner(getattr(model, temperature), S)}) if temperature else model
 
 
@@ -68,6 +74,7 @@ def material(model, S: float):
 
 
 def surface(model, S: float):
+    model = changed(model, 1 / S, "from", "until")
     return model.model_copy(update={kind: exchange(getattr(model, kind), S, *known(EXCHANGE, kind, "exchange")) for kind in boundary.EXCHANGES})
 
 

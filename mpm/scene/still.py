@@ -5,6 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
+from mpm.config.boundary import spell
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
 
@@ -20,12 +21,12 @@ def joints(experiment) -> tuple:
         return ()
     outlines = [shape(body.shape, experiment.grid.dimension) for body in experiment.bodies.values()]
     refuse_overlap(experiment, names, outlines, [outline.bounds() for outline in outlines])
-    named = {frozenset(pair.between): (index, pair.conductance) for index, pair in enumerate(experiment.contacts)}
+    named = {frozenset(pair.between): (index, pair) for index, pair in enumerate(experiment.contacts)}
     found = []
     for (a, one), (b, two) in combinations(enumerate(outlines), 2):
-        index, given = named.get(frozenset((names[a], names[b])), (None, None))
+        index, pair = named.get(frozenset((names[a], names[b])), (None, None))
         if touch(one, two, h):
-            found.append(Joint(a, b, math.inf if given is None else given))
+            found.append(Joint(a, b) if pair is None else Joint(a, b, math.inf if pair.conductance is None else pair.conductance, *spell(pair)))
         elif index is not None:
             said = f"{names[a]} and {names[b]} do not touch, so no heat can pass: let faces of theirs meet, or leave the pair out"
             raise SceneError(("contacts", index), said)

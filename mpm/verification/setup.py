@@ -30,8 +30,8 @@ def one_exchange(experiment, name: str, *sides: str) -> tuple[float, float]:
     if entry.flux is not None or entry.radiation is not None or (entry.convection is None) == (entry.fixed is None):
         raise ValueError("the exact solution needs convection or a fixed temperature, and nothing else")
     beta, out = (entry.convection.beta, entry.convection.outside) if entry.fixed is None else (math.inf, entry.fixed.temperature)
-    if not isinstance(out, float):
-        raise ValueError("the exact solution needs a temperature outside that does not change over time")
+    if not isinstance(out, float) or not isinstance(beta, float) or getattr(entry, "from") or entry.until is not None:
+        raise ValueError("the exact solution needs a beta and a temperature outside that do not change over time")
     return beta, out
 
 
