@@ -36,7 +36,7 @@ class TimeTable(Kind):
             raise problem("table", f"{len(self.time)} times but {len(self.value)} values", "lists of the same length", at=("value",))
         for index, (low, high) in enumerate(zip(self.time, self.time[1:], strict=False)):
             if high < low:
-                raise problem("table", "times must increase", "each above the one before, or the same once more for a jump", at=("time", index + 1))
+                raise problem("table", "times must increase", "each above the one before, or the same twice for a jump", at=("time", index + 1))
             if high == low and index and self.time[index - 1] == low:
                 raise problem("table", "the same time three times", "two values at a jump", at=("time", index + 1))
         return self
@@ -50,14 +50,15 @@ class Sine(Kind):
     amplitude: float = doc(description="half of the swing")
     period: Time = doc(description="time of one swing")
     phase: Angle = doc(0.0, description="phase at the start")
-    least: ClassVar[tuple[float, str]] = (-math.inf, "")
+    least: ClassVar[tuple[float, str, str]] = (-math.inf, "", "")  # what is too low, words, unit
 
     @model_validator(mode="after")
     def above_least(self) -> "Sine":
         """Nothing below what the quantity may be."""
-        least, said = self.least
-        if self.mean - self.amplitude < least or (self.amplitude >= self.mean and said == "absolute zero"):
-            raise problem("sine", f"the value would fall below {said}", f"below {self.mean - least:g}", at=("amplitude",))
+        least, said, unit = self.least
+        low = self.mean - self.amplitude
+        if low < least or (low == least and unit == "K"):
+            raise problem("sine", said, f"below {self.mean - least:g}" + (f" [{unit}]" if unit else ""), at=("amplitude",))
         return self
 
 
@@ -71,7 +72,8 @@ class ProgrammeMenu(Law):
         one = Annotated[float, finite]
         table = of_unit(TimeTable, quantity, globals(), value=(tuple[one, ...], doc(description="value at each time")))
         sine = of_unit(Sine, quantity, globals(), mean=(one, doc(description="value in the middle")), amplitude=(swing, doc(description="half of the swing")))
-        sine.least = (least, "absolute zero" if quantity.unit == "K" else f"{least:g}")
+        said = f"the {quantity.name} would fall below {'absolute zero' if quantity.unit == 'K' else f'{least:g}'}"
+        sine.least = least, said, quantity.unit
         Menu.__init__(self, f"programme of the {quantity.name}", table, sine)
         self.quantity = quantity
 

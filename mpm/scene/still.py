@@ -1,4 +1,4 @@
-"""Bodies that do not move: which of them touch, and what conducts between them. Perfect contact where a pair is not named."""
+"""Bodies that do not move: which of them touch, and what conducts between them. Perfect contact where a pair is not named and both conduct."""
 
 import math
 from itertools import combinations
@@ -26,7 +26,9 @@ def joints(experiment) -> tuple:
     for (a, one), (b, two) in combinations(enumerate(outlines), 2):
         index, pair = named.get(frozenset((names[a], names[b])), (None, None))
         if touch(one, two, h):
-            found.append(Joint(a, b) if pair is None else Joint(a, b, math.inf if pair.conductance is None else pair.conductance, *spell(pair)))
+            given = math.inf if pair is None or pair.conductance is None else pair.conductance
+            H = 0.0 if pair is None and any(insulator(experiment, names[k]) for k in (a, b)) else given
+            found.append(Joint(a, b, H) if pair is None else Joint(a, b, H, *spell(pair)))
         elif index is not None:
             said = f"{names[a]} and {names[b]} do not touch, so no heat can pass: let faces of theirs meet, or leave the pair out"
             raise SceneError(("contacts", index), said)
@@ -42,10 +44,16 @@ def refuse(experiment, names, conducting) -> None:
         cure = f"contacts: [{{between: [{names[joint.first]}, {names[joint.second]}], conductance: 0}}]"
         if kind in ("explicit", "bounded"):
             raise SceneError(("method", "rigid"), f"{both}, which takes implicit steps: auto or implicit, not {kind}; or keep them apart by {cure}")
-        for material in (experiment.bodies[names[b]].material for b in (joint.first, joint.second)):
-            kappa = experiment.materials[material].heat.kappa
-            if type(kappa).kind == "constant" and kappa.value == 0:
+        for name in (names[joint.first], names[joint.second]):
+            if insulator(experiment, name):
+                material = experiment.bodies[name].material
                 raise SceneError(("materials", material, "heat"), f"{both}, and kappa is 0: give it a conductivity; or keep them apart by {cure}")
+
+
+def insulator(experiment, name: str) -> bool:
+    """Whether a body conducts nothing."""
+    kappa = experiment.materials[experiment.bodies[name].material].heat.kappa
+    return type(kappa).kind == "constant" and kappa.value == 0
 
 
 def refuse_covered(experiment, outlines, found) -> None:

@@ -52,7 +52,8 @@ def slab(low=0.0, high=1.0):
     return RigidBody(Box((low,), (high,)), 300.0, 1.0, 1.0, 1.0, surfaces)
 
 
-WAYS = {"implicit": (Method(tolerance=1e-6), 1e-4, 1), "order 2": (Method("implicit", order=2, tolerance=1e-6), 1e-4, 1), "two halves": (Method(tolerance=1e-6), 1e-4, 2),
+WAYS = {"implicit": (Method(tolerance=1e-6), 1e-4, 1),
+        "order 2": (Method("implicit", order=2, tolerance=1e-6), 1e-4, 1), "two halves": (Method(tolerance=1e-6), 1e-4, 2),
         "explicit": (Method("explicit", tolerance=1e-5), 1e-3, 1), "bounded": (Method("bounded", tolerance=1e-4), 2e-3, 1)}  # fmt: skip
 
 
@@ -158,7 +159,8 @@ def test_a_beta_that_rises(series):
 
 def test_a_point_meets_what_is_constant():
     heat = {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}
-    data = {"grid": {"dimension": 0}, "time": {"end": 1}, "materials": {"m": heat}, "bodies": {"b": {"shape": {"point": {"surface_to_volume": 6}}, "material": "m"}}}
+    data = {"grid": {"dimension": 0}, "time": {"end": 1}, "materials": {"m": heat},
+            "bodies": {"b": {"shape": {"point": {"surface_to_volume": 6}}, "material": "m"}}}  # fmt: skip
     for key, more in (("from", {"from": 0.5}), ("beta", {"convection": {"beta": {"sine": {"mean": 3, "amplitude": 1, "period": 1}}, "outside": 400}})):
         with pytest.raises(ConfigError, match=rf"surfaces.0.*{key}"):
             mpm.load(data | {"surfaces": [{"of": "b", "convection": {"beta": 1, "outside": 400}} | more]})
