@@ -40,7 +40,7 @@ def test_flow_names(block, name, path):
         ("η", r"nothing in this file is called 'η'; it would be materials.<name>.flow.ellipse.eta", ""),
         ("every.", "nothing in this file is called", ""),
         ("materials.dough.heat.fourier.kapa", "nothing in this file is called", "'materials.dough.heat.fourier.kappa'"),
-        ("sweep", "nothing in this file is called", ""),
+        ("chart", "nothing in this file is called", ""),
         ("sweep.axes", "nothing in this file is called", ""),
         ("", "nothing in this file is called", ""),
         ("..", "nothing in this file is called", ""),
