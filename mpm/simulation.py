@@ -148,11 +148,10 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     def look() -> bool:
         stop = beat is not None and beat(clock.time / float(scene.times[-1]), clock.time * scene.scale)
         if keeper is not None and keeper.due(stop):
-            passed = {"spent": clock.spent + time.perf_counter() - began}
             parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory()}
             parts |= {"bodies": arrays(scene.bodies), "references": arrays(scene.references)}
             parts |= {"meeting": scene.meeting.memory()} if scene.meeting is not None else {}
-            keeper.save({"clock": vars(clock) | passed, **parts})
+            keeper.save({"clock": vars(clock) | {"spent": clock.spent + time.perf_counter() - began}, **parts})
         return stop
 
     for end, told in stops(scene.times, merged(scene.watch.snapshots, jumps(scene.surroundings, scene.times[-1])))[clock.output :]:
