@@ -32,7 +32,7 @@ def tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
         yield Finding(at, "time scaling does not know tools", "time: {scale: 1}", on_key=True)
     if item.heat is not None and not heats(experiment):
         yield Finding((*at, "heat"), "no body has heat, so nothing can be exchanged", "a heat section in the material of a body", on_key=True)
-    elif item.heat is not None and item.heat.beta > 0:
+    elif item.heat is not None and item.heat.beta != 0.0:
         for material in sorted({body.material for body in experiment.bodies.values()}):
             if experiment.materials[material].heat is not None and not conducts(experiment, material):
                 said = f"{material!r} conducts no heat (kappa = 0), and so passes nothing on that it takes in from a tool"
