@@ -121,6 +121,7 @@ class Shots:
         groups, self.at = results.view.groups, at
         self.grid, self.particles = (self.kept(groups.get(name), at) for name in ("grid", "particles"))
         self.entries: Any = None
+        self.rows = None if self.particles is None else [np.asarray(self.particles[name].values) for name in ("row_start", "row_size")]
         outside = next((group for group in map(groups.get, ("particles", "grid")) if group is not None and "file" in group), None)
         if outside is not None and (file := str(outside["file"].isel({dim: at[dim] for dim in outside["file"].dims}).values)):
             self.entries = elsewhere(results.path.parent / file)
@@ -130,8 +131,8 @@ class Shots:
             self.times = self.entries.times
         elif here:
             self.times = np.asarray(here[0]["snapshot"].values, float)
-            if self.particles is not None and len(self.sizes()):
-                self.numbers = np.flatnonzero(self.sizes())  # of a point that stopped early the last are empty
+            if self.rows is not None:
+                self.numbers = np.flatnonzero(self.rows[1])  # of a point that stopped early the last are empty
                 self.times = self.times[self.numbers]
             else:
                 self.numbers = np.arange(len(self.times))
@@ -141,10 +142,6 @@ class Shots:
         """A group whose fields lie in the dataset."""
         there = group is not None and "snapshot" in group.dims and group.sizes["snapshot"] and "file" not in group
         return group.isel({dim: index for dim, index in at.items() if dim in group.dims}) if there else None
-
-    def sizes(self) -> np.ndarray:
-        """Number of particles in each snapshot."""
-        return np.asarray(self.particles["row_size"].values)
 
     def __len__(self) -> int:
         return len(self.times)
@@ -163,7 +160,7 @@ class Shots:
         grid = {} if self.grid is None else {str(name): row.isel(snapshot=number).values for name, row in self.grid.data_vars.items() if "snapshot" in row.dims}
         particles = {}
         if self.particles is not None:
-            begin, size = (int(self.particles[name].isel(snapshot=number).values) for name in ("row_start", "row_size"))
+            begin, size = (int(values[number]) for values in self.rows)
             rows = [(str(name), row) for name, row in self.particles.data_vars.items() if "obs" in row.dims]
             particles = {name: row.isel(obs=slice(begin, begin + size)).values for name, row in rows}
         return Frame(float(self.times[k]), grid, particles)
