@@ -61,7 +61,7 @@ def test_what_is_cited_is_here(path):
         ("docs/physics.md 5.9)", ["docs/physics.md 5.9"]),
         ("docs/physics.md 11 has 4.1e-3", []),
         ("see interface.md section 3", ["interface.md"]),
-        ('README.md, "Physics and methods"', []),
+        ('README.md, "From the shell"', []),
         ('README.md, "No such heading"', ['README.md, "No such heading"']),
         ("../shared/notes", ["../shared"]),
         ("failure-modes 11", ["failure-modes 11"]),

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.mark.slow
 def test_the_commands_of_the_page(tmp_path):
-    page = (ROOT / "docs" / "showing.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/showing.md").read_text(encoding="utf-8")
     commands = re.search(r"<!-- showing -->\n```bash\n(.*?)```", page, re.DOTALL)[1].strip().splitlines()
     assert len(commands) == 5
     script = f'mpm() {{ "{sys.executable}" -c "import sys; from mpm_cli.main import main; sys.exit(main())" "$@"; }}\n'

@@ -1,4 +1,4 @@
-"""The figures of "Speed against accuracy" in the README, by one command: `python -m mpm.study.figures [NAME...]`.
+"""The figures of docs/accuracy.md, by one command: `python -m mpm.study.figures [NAME...]`.
 
 Each configs/studies/<name>.yaml that has a `chart:` is charted into results/<name>-chart (what is there is kept) and its figure goes to docs/chart_<name>.png;
 `theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for robin_cylinder: scikit-fem lives in an environment of its own; `--fem PYTHON` is short
