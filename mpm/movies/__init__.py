@@ -172,6 +172,7 @@ def mp4(path: Path, frames: Any, each: float) -> None:
         stream.pix_fmt = "yuv420p"
         for k, pixels in enumerate(frames):
             even = pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
-            stream.height, stream.width = (even.shape[:2]) if k == 0 else (stream.height, stream.width)
+            if k == 0:
+                stream.height, stream.width = even.shape[:2]
             container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")))
         container.mux(stream.encode())
