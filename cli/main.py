@@ -31,8 +31,28 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-COMMANDS = (run, sweep, fit, sensitivity, ask, plan, chart, stability, status, collect, compare, verify,
-            plot, movie, export, report, bench, schema, info, warmup)
+COMMANDS = (
+    run,
+    sweep,
+    fit,
+    sensitivity,
+    ask,
+    plan,
+    chart,
+    stability,
+    status,
+    collect,
+    compare,
+    verify,
+    plot,
+    movie,
+    export,
+    report,
+    bench,
+    schema,
+    info,
+    warmup,
+)
 UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(

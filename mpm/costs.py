@@ -19,8 +19,14 @@ STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: el
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
-RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3,
-         "JoinedLinear": 0.1, "JoinedNewton": 0.5}  # s of the interpreter in a run, by method
+RIGID = {
+    "LinearSteps": 0.25e-3,
+    "NewtonSteps": 25e-3,
+    "ChebyshevSteps": 6e-3,
+    "BoundedSteps": 3e-3,
+    "JoinedLinear": 0.1,
+    "JoinedNewton": 0.5,
+}  # s of the interpreter in a run, by method
 SHOWN = 20e-6  # s an output of rigid bodies
 COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache

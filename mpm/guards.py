@@ -35,9 +35,11 @@ class Guards:
     def __init__(self, scene):
         over = ROUNDING if scene.repair else SLOPES if scene.blend == 1.0 and not scene.sharp else NOISE
         self.data = [Data(body, around, over) for body, around in zip(scene.bodies, scene.surroundings, strict=True)]
-        self.judged = all(
-            isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies
-        ) and not any(len(reference.load) for reference in scene.references) and (scene.meeting is None or scene.meeting.drive is None)
+        self.judged = (
+            all(isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies)
+            and not any(len(reference.load) for reference in scene.references)
+            and (scene.meeting is None or scene.meeting.drive is None)
+        )
         self.begun = math.nan
         self.most = 0.0
         self.pieces: list[list[int]] | None = None  # of each body at the start (integrate/fragments.py)

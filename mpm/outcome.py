@@ -23,7 +23,8 @@ KINDS = {
     FRACTURED: ("fractured", "particles are more than two cells apart", "more `method.particles` or larger cells; `method.fracture: warn` lets it run on"),
     UNPREPARED: ("unprepared", "a body came near a wall or another body unforeseen", "name what it meets: the wall as `contact`, the pair under `contacts`"),
     NO_EQUILIBRIUM: (
-        "no_equilibrium", "no step of implicit mechanics finds a balance of forces",
+        "no_equilibrium",
+        "no step of implicit mechanics finds a balance of forces",
         "the load may be more than a material without viscosity bears: a smaller load, `eta` in flow, or `method.mechanics: explicit` to see it collapse",
     ),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),

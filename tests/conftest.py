@@ -96,6 +96,14 @@ def order(errors, ratio=2.0):
 def core():
     """The helpers of this file: tests are not a package."""
     return SimpleNamespace(
-        DIRECTIONS=DIRECTIONS, HOT=HOT, COLD=COLD, TRANSFERS=TRANSFERS, config=config, experiment=experiment, methods=methods, play=play, table=table,
+        DIRECTIONS=DIRECTIONS,
+        HOT=HOT,
+        COLD=COLD,
+        TRANSFERS=TRANSFERS,
+        config=config,
+        experiment=experiment,
+        methods=methods,
+        play=play,
+        table=table,
         order=order,
     )

@@ -34,4 +34,3 @@ class Pair(Spell):
         if len(given) > 1:
             raise problem("contact", f"{given[0]} and {given[1]} say different things of one pair", "one of friction, stick, welded", at=(given[1],))
         return self
-

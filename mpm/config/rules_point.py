@@ -115,4 +115,3 @@ def output(experiment: Any) -> Iterator[Finding]:
     """One point has no fields."""
     if experiment.grid.dimension == 0 and experiment.output.snapshots is not None:
         yield Finding(("output", "snapshots"), "a material point has no fields", "observables, which are written as series", on_key=True)
-

@@ -59,4 +59,3 @@ def find_links(space, bodies, touching, walls, conductance, dt):
                 links.at[L, k, m], links.t[L, k, m] = n, t
         L += 1
     return Links(links.body[:L], links.rate[:L], links.at[:L], links.t[:L])
-

@@ -1,11 +1,11 @@
 """OUT/fit.nc: what was found, and every evaluation.
 
-    /             best, standard_error, interval, interval_covariance (parameter[, bound]); covariance, correlation (parameter, parameter_);
-                  misfit (curve, held out ones too), held_out; measured, fitted, band, residual (observation), which curve and time each is of
-    /profile      value, rise (place): rise of the sum of squares over that of the interval's end; parameter_of
-    /curves       fitted_<curve>, band_<curve> (time): half width of the 95 % confidence band
-    /posterior    draw (draw, parameter), where it was sampled
-    /evaluations  the dataset of every point tried (dims point), /evaluations/series its series
+/             best, standard_error, interval, interval_covariance (parameter[, bound]); covariance, correlation (parameter, parameter_);
+              misfit (curve, held out ones too), held_out; measured, fitted, band, residual (observation), which curve and time each is of
+/profile      value, rise (place): rise of the sum of squares over that of the interval's end; parameter_of
+/curves       fitted_<curve>, band_<curve> (time): half width of the 95 % confidence band
+/posterior    draw (draw, parameter), where it was sampled
+/evaluations  the dataset of every point tried (dims point), /evaluations/series its series
 """
 
 import math

@@ -1,8 +1,8 @@
 """Numbers over time: a temperature, a coefficient, a flux as a table or a sine, or one after another with jumps between. A number is itself.
 
-    at(programme, t)      value; at a jump that after it        during(programme, t)   what holds from t on to the next jump: without jumps
-    bounds(programme) -> (lowest, highest)                      longest(programme)     no step may be longer and still see it [s]
-    turns(programme) -> times of its jumps [s]                  spell(programme, begin, end)   the same within [begin, end), nothing outside
+at(programme, t)      value; at a jump that after it        during(programme, t)   what holds from t on to the next jump: without jumps
+bounds(programme) -> (lowest, highest)                      longest(programme)     no step may be longer and still see it [s]
+turns(programme) -> times of its jumps [s]                  spell(programme, begin, end)   the same within [begin, end), nothing outside
 """
 
 import math

@@ -170,5 +170,3 @@ def gather_heat(space, x, thermal, start, end, blend, affine, work):
             thermal.theta[first + p] += after[p]
             for k in range(D):
                 thermal.c[first + p, k] = affine * slope[k, p]
-
-

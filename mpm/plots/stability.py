@@ -150,4 +150,3 @@ def positive(values: np.ndarray) -> bool:
 def wide(values: np.ndarray) -> bool:
     """Whether a logarithmic axis shows more."""
     return bool(np.max(values) > 8 * np.min(values))
-

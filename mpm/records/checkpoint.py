@@ -127,4 +127,3 @@ class Checkpoint:
         if self.there:
             self.path.unlink(missing_ok=True)
             self.there = False
-

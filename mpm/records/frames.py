@@ -73,7 +73,6 @@ class Entries(Sequence):
             data = file.read(self.ends[k] - begin)
         return unpacked(*unseal(data, self.path))
 
-
     def part(self, k: int, name: str) -> np.ndarray:
         """One field of the particles of entry k, which `frames[k]` has checked before."""
         import h5py

@@ -81,9 +81,7 @@ def near(experiment) -> bool:
 
     boxes = [shape(body.shape, experiment.grid.dimension).bounds() for body in experiment.bodies.values()]
     reach = NEAR * experiment.grid.cell
-    return any(
-        all(a <= d + reach and c <= b + reach for a, b, c, d in zip(*boxes[i], *boxes[j], strict=True)) for i in range(len(boxes)) for j in range(i)
-    )
+    return any(all(a <= d + reach and c <= b + reach for a, b, c, d in zip(*boxes[i], *boxes[j], strict=True)) for i in range(len(boxes)) for j in range(i))
 
 
 def no_flow(experiment: Any, left: float) -> Offer | str:

@@ -152,5 +152,3 @@ def data(table: dict[str, Any]) -> dict[str, Any]:
         "columns": [{**column, "values": [row["cells"][k] for row in rows]} for k, column in enumerate(table["columns"])],
         "status": [row["status"] for row in rows],
     }
-
-

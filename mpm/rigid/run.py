@@ -219,9 +219,7 @@ def entered(make, way: Method, moments, end: float, turn: int, before):
     return steps
 
 
-def system_of(
-    bodies, members, joints, axisymmetric: bool, h: float, origin, end: float, hats: bool = False, moment: float = 0.0
-) -> tuple[System, list[Seat]]:
+def system_of(bodies, members, joints, axisymmetric: bool, h: float, origin, end: float, hats: bool = False, moment: float = 0.0) -> tuple[System, list[Seat]]:
     """The equations from a moment on of one body, or of a group that conduct into one another, and where each body's unknowns are."""
     touching = [j for j in joints if j.acts(moment)]
     beside = {b: tuple(bodies[j.second if j.first == b else j.first].shape for j in touching if b in (j.first, j.second)) for b in members}

@@ -76,9 +76,7 @@ def law(given):
     return Constant(float(given)) if isinstance(given, int | float) else given
 
 
-def make_system(
-    body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False, others: tuple = (), moment: float = 0.0
-) -> System:
+def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: float = 0.0, hats: bool = False, others: tuple = (), moment: float = 0.0) -> System:
     """`end`: how long fluxes act, for the range of temperatures [s]; `hats`: for BoundedSteps; `others`: shapes that touch it; `moment`: of the
     run [s], for what jumps. The range of temperatures and `zero` are those of the whole run."""
     kappa, alpha = law(body.kappa), law(body.alpha)

@@ -92,8 +92,12 @@ def heat(experiment, one: Scales) -> list[Group]:
 def strains(experiment, one: Scales) -> dict[str, float]:
     """Upper estimates of strain by cause: gravity and tractions put on at once, a stop from the starting speed, thermal expansion."""
     g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
-    return {"gravity": 2 * one.density * g * one.height / one.softest, "impact": one.speed / math.sqrt(one.softest / one.density), "swelling": one.swelling,
-            "traction": 2 * one.traction / one.softest}
+    return {
+        "gravity": 2 * one.density * g * one.height / one.softest,
+        "impact": one.speed / math.sqrt(one.softest / one.density),
+        "swelling": one.swelling,
+        "traction": 2 * one.traction / one.softest,
+    }
 
 
 def motion(experiment, one: Scales) -> list[Group]:

@@ -19,6 +19,7 @@ from mpm.warned import warning
 def rigid_bodies(experiment, field=None) -> list:
     """The bodies of a rigid scene, with the temperatures `field(x)` at the start where given; SceneError for one that has nothing to do."""
     from mpm.rigid import RigidBody
+
     if experiment.grid.basis != "quadratic":
         said = f"{experiment.grid.basis}: bodies that do not move have quadratic splines only (order 3 in the cell); leave grid.basis out"
         raise SceneError(("grid", "basis"), said)

@@ -148,7 +148,7 @@ def bonded(experiment, name: str, surface, lower, upper) -> np.ndarray:
             raise SceneError(
                 ("bodies", name, "shape"),
                 f"{name} lies on the {side} wall, and a part of it is {gap[near].min():.3g} m away from that wall: nearer than {NEAR:g} cells, it would be "
-                "held as if it lay on it too; smaller cells, or method.frame: updated"
+                "held as if it lay on it too; smaller cells, or method.frame: updated",
             )
     return bound
 

@@ -224,8 +224,10 @@ def main(arguments=None) -> int:
         table |= {f"mechanics {method} {g}": one.mechanics(method, g, 0.2, 0.4) for method in METHODS for g in ("mls", "bspline")} if D == 1 else {}
         found.append({**search(D, asked.count, asked.seed, lambda text: print(text, file=sys.stderr)), "regular": table})
         print(f"\n{D}-D, regular 2 a cell: " + ", ".join(f"{name} {value:.3f}" for name, value in table.items()))
-        print(f"{D}-D, least of {asked.count} random arrangements ({found[-1]['seconds']:.0f} s); safe are {CONDUCTION} for heat, "
-              f"{SUBSTEPS * CONDUCTION:.2f} where it takes sub-steps (grid), and {WAVE} for mechanics:")
+        print(
+            f"{D}-D, least of {asked.count} random arrangements ({found[-1]['seconds']:.0f} s); safe are {CONDUCTION} for heat, "
+            f"{SUBSTEPS * CONDUCTION:.2f} where it takes sub-steps (grid), and {WAVE} for mechanics:"
+        )
         for name, value in found[-1]["worst"].items():
             safe = SUBSTEPS * CONDUCTION if name == "heat grid" else CONDUCTION if name.startswith("heat") else WAVE
             print(f"  {name:28} {value:.4f}   {value / safe:.2f} of the safe step{'' if value >= safe else '   BELOW'}")

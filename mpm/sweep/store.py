@@ -6,8 +6,8 @@
     OUT/points/ab/<id>.frames   the point's snapshots, where they are large (records.frames)
     OUT/checkpoints/<id>.checkpoint   how far a point is that was stopped or killed (records.checkpoint); gone when it is done
     OUT/sweep.nc             the dataset (collect.py)
-    A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
     OUT/lock                 held by the process that writes (lock.py)
+A point of its own beats one in a batch, and a later batch an earlier one, so no clock decides which record holds.
 """
 
 import contextlib

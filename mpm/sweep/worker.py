@@ -24,9 +24,7 @@ QUIET = 0.2  # least seconds between two beats told
 FENCE = 300_000_000  # bytes that a process reserves without using them
 
 
-def perform(
-    task: Task, runner: str, stopped: Callable[[str, float, float], str], store: Any = None, note: Callable[[str], None] | None = None
-) -> dict:
+def perform(task: Task, runner: str, stopped: Callable[[str, float, float], str], store: Any = None, note: Callable[[str], None] | None = None) -> dict:
     """Run a task, save its records in its folder or in `store`, and return the message that tells it.
 
     `stopped(run_id, fraction, time)` is called at every beat and returns "", "timeout" (stop, keep the series as a record) or "cancel" (stop, keep nothing).

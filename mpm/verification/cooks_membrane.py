@@ -23,6 +23,7 @@ ELEMENTS = 32
 
 def shapes(s: np.ndarray, t: np.ndarray):
     """Values (Q, 9) and derivatives (Q, 9, 2) of the 9-node element on [-1, 1]^2; node 3 i + j at (i - 1, j - 1)."""
+
     def line(x):
         return np.stack([x * (x - 1) / 2, 1 - x * x, x * (x + 1) / 2], axis=1), np.stack([x - 0.5, -2 * x, x + 0.5], axis=1)
 

@@ -122,11 +122,14 @@ HOSTILE = {
     "power": base(sweep="{axes: {kappa: [1, 2]}, where: 'kappa < 9**9**9**9'}"),
     "tag": base(title="!!python/object/apply:os.system ['touch owned']"),
 }
-STABLE = base(surfaces="[{of: slab, convection: {beta: 1, outside: 300}}]") + """
+STABLE = (
+    base(surfaces="[{of: slab, convection: {beta: 1, outside: 300}}]")
+    + """
 stability:
   across: {beta: {log: [0.01, 100, 9]}}
   along: {method.heat_step: {log: [0.001, 10, 9]}}
 """
+)
 POINT = """
 grid: {dimension: 0}
 bodies: {b: {shape: {point: {strain: {xx: 0.1}}}, material: m}}

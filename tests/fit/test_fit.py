@@ -68,6 +68,7 @@ class InProcess:
 def rng():
     return np.random.default_rng(7)
 
+
 TRUE = np.array([0.4, 20, 2800])
 NAMES = ("centre", "face")
 

@@ -10,4 +10,3 @@ def test_below_absolute_zero_is_no_result(point):
     material = {"density": 1.0, "heat": LAW, "expansion": {"modulus": {"gamma": 3e3, "reference": 300.0}}, "heating": {"elastic": {}}}
     run = mpm.run_point(point([{"strain_rate": {"xx": 0.5}}], material=material, every=0.5, time={"end": 1.0, "step": 0.5}))
     assert run.outcome.kind == "max_principle" and run.outcome.advice and run.finals["temperature_mean"] > 0
-

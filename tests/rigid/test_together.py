@@ -133,6 +133,7 @@ def test_a_tilted_contact_is_the_flat_one(angle):
 @pytest.mark.parametrize("laws", [(1.3, Bump(2.0, 60.0, 350.0, 5.0)), (Logistic(0.5, 2.0, 340.0, 20.0), Bump(2.0, 60.0, 350.0, 5.0))])
 def test_laws_of_temperature_do_not_see_a_cut(laws):
     """A slab of one material in two halves is the slab, within what the cell leaves; every half's ledger is closed."""
+
     def run(parts, cell):
         bodies = [RigidBody(Box((a,), (b,)), 300.0, 1.5, *laws, (("right", 20.0, 400.0),) * (b == 1.0)) for a, b in parts]
         joints = [Joint(k, k + 1) for k in range(len(parts) - 1)]
