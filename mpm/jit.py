@@ -21,7 +21,7 @@ from mpm import cache, linking
 from mpm.fingerprint import fingerprint
 
 # No "nnan" and no "ninf": guards must still see a NaN. (`fastmath=True` would remove isnan and isfinite.)
-FLAGS = {"fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
+FLAGS = {"fastmath": {"contract", "arcp", "nsz", "afn"}, "error_model": "numpy", "nogil": True}
 
 
 # For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (an atomic operation each, and a
