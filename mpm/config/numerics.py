@@ -95,7 +95,7 @@ class AutoHeat(Kind):
     """Whichever of the integrators suits the laws."""
 
     kind: ClassVar[str] = "auto"
-    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] = doc(1e-4, description="relative error a step")
+    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] | None = doc(None, description="relative error a step; 1e-4 unless said")
 
 
 class Implicit(Kind):
@@ -110,7 +110,7 @@ class Explicit(Kind):
     """Lumped mass and stabilised explicit steps."""
 
     kind: ClassVar[str] = "explicit"
-    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] = doc(1e-4, description="relative error a step")
+    tolerance: Annotated[float, Quantity("", "relative tolerance", above=0, most=1)] | None = doc(None, description="relative error a step; 1e-4 unless said")
 
 
 class Bounded(Kind):

@@ -9,7 +9,11 @@ def schema() -> dict[str, Any]:
     """JSON Schema (2020-12): kinds as oneOf, quantities as a number in SI or text with a unit, units in the descriptions."""
     made = Experiment.model_json_schema()
     made["properties"]["extends"] = {"type": "string", "description": "a config that this one changes, relative to this file"}
-    made["anyOf"] = [{"required": made.pop("required")}, {"required": ["extends"]}]  # what another file says need not be said again
+    whole: dict[str, Any] = {"required": made.pop("required"), "properties": {}}
+    for name, part in made["properties"].items():
+        if needed := made["$defs"].get(part.get("$ref", "").rpartition("/")[2], {}).pop("required", None):
+            whole["properties"][name] = {"required": needed}
+    made["anyOf"] = [whole, {"required": ["extends"]}]  # what another file says need not be said again
     tidy(made)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **made, "title": "mpm experiment"}
 

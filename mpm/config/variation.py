@@ -111,11 +111,11 @@ def rounded(value: float, places: int) -> str:
 
 def entry(key: Any, inner: Any) -> str:
     """A key of a mapping with what lies under it."""
-    if inner == {}:
-        return str(key)
-    return f"{key}({entries(inner)})" if isinstance(inner, dict) else f"{key}={label(inner)}"
+    if isinstance(inner, dict):
+        return f"{key}({entries(inner)})" if entries(inner) else str(key)
+    return f"{key}={label(inner)}"
 
 
 def entries(inner: Any) -> str:
     """What stands in the brackets of a label."""
-    return ", ".join(f"{name}={label(item)}" for name, item in inner.items()) if isinstance(inner, dict) else label(inner)
+    return ", ".join(f"{name}={label(item)}" for name, item in inner.items() if item is not None) if isinstance(inner, dict) else label(inner)

@@ -130,7 +130,7 @@ def own(experiment: Any) -> float:
     """
     from mpm.rigid import Method
 
-    return 0.0 if experiment.moving else getattr(experiment.method.rigid, "tolerance", Method.tolerance)
+    return 0.0 if experiment.moving else getattr(experiment.method.rigid, "tolerance", None) or Method.tolerance
 
 
 def crossing(series: np.ndarray, times: np.ndarray, level: float) -> float:

@@ -65,7 +65,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     found = {dataset_name(name): threshold(name) for name in experiment.output.observables if threshold(name) is not None}
     times, grid = output_times(experiment), experiment.grid
     kind = type(experiment.method.rigid).kind
-    options = {name: getattr(experiment.method.rigid, name) for name in ("order", "tolerance") if hasattr(experiment.method.rigid, name)}
+    options = {name: getattr(experiment.method.rigid, name) for name in ("order", "tolerance") if getattr(experiment.method.rigid, name, None)}
     method = Method(kind, step=None if experiment.time.step == "auto" else experiment.time.step, **options)
     shift = np.array(experiment.method.offset) * grid.cell
     levels = [(at.probe, at.kelvin) for at in found.values()]

@@ -138,4 +138,4 @@ def test_what_does_not_fit_is_told_as_advice():
         "exact": "robin_cylinder",
     }
     record = compute("it", lambda: mpm.load(plate), "mpm.runner", None)
-    assert record.error.startswith("failed: exact: robin_cylinder needs a ball") and record.error.endswith("or make the scene its problem")
+    assert record.error.startswith("failed: <dict>: exact: robin_cylinder needs a ball") and record.error.endswith("or make the scene its problem")
