@@ -6,7 +6,7 @@ from numba.core.datamodel import models
 from numba.core.imputils import lower_builtin
 from numba.extending import register_model, type_callable
 
-FLAGS = ("contract", "reassoc", "arcp", "nsz", "afn")  # as mpm.jit: no "nnan", no "ninf"
+FLAGS = ("contract", "reassoc", "arcp", "nsz", "afn")  # of each vector operation; no "nnan", no "ninf", as mpm.jit, which has no "reassoc"
 
 
 class LanesType(types.Type):

@@ -41,7 +41,7 @@ CHOSEN = {  # module: (mutants, the nearest tests)
     "mpm/integrate/timestep.py": (12, "tests/integrate/test_timestep.py"),
     "mpm/guards.py": (12, "tests/test_guards.py"),
     "mpm/sweep/store.py": (10, "tests/sweep/test_store.py tests/sweep/test_batches.py"),
-    "mpm/sweep/engine.py": (12, "tests/sweep/test_engine.py tests/sweep/test_resources.py"),
+    "mpm/sweep/engine.py": (12, "tests/sweep/test_engine.py tests/sweep/test_stopped.py tests/sweep/test_resources.py"),
     "mpm/sweep/resources.py": (6, "tests/sweep/test_resources.py"),
     "mpm/records/netcdf.py": (6, "tests/records/test_netcdf.py"),
     "mpm/config/units.py": (5, "tests/config/test_units.py tests/config/test_quantities.py"),

@@ -128,7 +128,7 @@ def test_a_thousand_points_are_small_and_quick(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     if browsers.FOUND is None:
-        pytest.skip("no Chromium is installed here; apt-get install chromium-headless-shell, as CI does")
+        pytest.skip("no Chromium is installed here; apt-get install chromium-headless-shell runs this test")
     made = browsers.Browser(tmp_path_factory.mktemp("browser"))
     yield made
     made.close()
