@@ -36,7 +36,7 @@ def frame(experiment: Any) -> Iterator[Finding]:
     if known(lambda: method.heat.kind not in ("auto", "implicit")):
         yield Finding(("method", "heat"), "heat in the total frame steps implicitly", ["auto", "implicit", UPDATED], on_key=True)
     if known(lambda: method.bounds.kind == "repair"):
-        yield Finding(("method", "bounds"), "the total frame has no keeper of bounds yet", ["no `bounds`", UPDATED], on_key=True)
+        yield Finding(("method", "bounds"), "the total frame cannot keep temperatures within bounds yet", ["no `bounds`", UPDATED], on_key=True)
     if known(lambda: method.fracture != "warn"):
         yield Finding(("method", "fracture"), "bodies in the total frame do not come apart", UPDATED, on_key=True)
     if known(lambda: method.particles < 2):
