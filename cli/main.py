@@ -13,10 +13,12 @@ from mpm_cli.bench import bench
 from mpm_cli.chart import chart
 from mpm_cli.collect import collect
 from mpm_cli.compare import compare
+from mpm_cli.docs import docs
 from mpm_cli.export import export
 from mpm_cli.fit import fit
 from mpm_cli.info import info
 from mpm_cli.movie import movie
+from mpm_cli.new import new
 from mpm_cli.plan import plan
 from mpm_cli.plot import plot
 from mpm_cli.report import report
@@ -32,6 +34,7 @@ from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
 COMMANDS = (
+    new,
     run,
     sweep,
     fit,
@@ -49,6 +52,7 @@ COMMANDS = (
     export,
     report,
     bench,
+    docs,
     schema,
     info,
     warmup,
@@ -101,7 +105,7 @@ def told(error: Exception) -> int:
 
     # named without importing what the command did not need
     places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
-    places += (("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"))
+    places += (("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"), ("mpm.starting.places", "Missing"))
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))

@@ -33,16 +33,16 @@ class Ball(Kind):
     """Interval in 1-D, disc in 2-D, sphere in axisymmetric (centre on the axis) and 3-D."""
 
     kind: ClassVar[str] = "ball"
-    centre: Point
-    radius: Length
+    centre: Point = doc(description="centre")
+    radius: Length = doc(description="radius")
 
 
 class Cylinder(Kind):
     """Cylinder about the axis (axisymmetric, base [0, z]) or about the last coordinate (3-D, base = centre of the lower face)."""
 
     kind: ClassVar[str] = "cylinder"
-    radius: Length
-    height: Length
+    radius: Length = doc(description="radius")
+    height: Length = doc(description="height")
     base: Point = doc(description="centre of the lower face")
 
 
@@ -50,9 +50,9 @@ class Ring(Kind):
     """Two-dimensional ring between two radii."""
 
     kind: ClassVar[str] = "ring"
-    centre: Point
-    inner: Length
-    outer: Length
+    centre: Point = doc(description="centre")
+    inner: Length = doc(description="inner radius")
+    outer: Length = doc(description="outer radius")
 
     @model_validator(mode="after")
     def order(self) -> "Ring":
@@ -66,7 +66,7 @@ class Polygon(Kind):
     """Polygon in two dimensions or in the (r, z) plane, without crossings; either orientation."""
 
     kind: ClassVar[str] = "polygon"
-    vertices: tuple[Point, ...] = doc(min_length=3)
+    vertices: tuple[Point, ...] = doc(min_length=3, description="corners in order; the last is joined to the first")
 
 
 class MaterialPoint(Kind):
@@ -100,7 +100,7 @@ SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon, MaterialPo
 class Body(Model):
     """A shape of one material, with temperature and velocity at the start."""
 
-    shape: one_of("shape", *SHAPES)
+    shape: one_of("shape", *SHAPES) = doc(description="what the body fills at the start")
     material: str = doc(description="a name under materials")
     temperature: Temperature = doc(293.15, description="temperature at the start")
     velocity: tuple[Velocity, ...] | None = doc(None, description="velocity at the start, one number a direction; zero unless given")

@@ -35,8 +35,8 @@ NOT_KEYED = ("title", "sweep", "smoke", "chart", "stability", "parameters", "for
 class Experiment(Model):
     """A scene, how it is computed, what is recorded, and what varies. All numbers in SI."""
 
-    title: str = ""
-    grid: Grid
+    title: str = doc("", description="what the experiment asks, for figures and reports")
+    grid: Grid = doc(description="dimension, extent and cells of the domain")
     bodies: dict[str, Body] = doc(min_length=1, description="bodies by name")
     materials: dict[str, Material] = doc(min_length=1, description="materials by name")
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
@@ -46,9 +46,9 @@ class Experiment(Model):
     gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
     loads: tuple[Load, ...] = doc((), description="tractions on bodies that move, and drag")
     loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")
-    time: Clock
-    method: Method = Method()
-    output: Output = Output()
+    time: Clock = doc(description="when the run ends and how it steps")
+    method: Method = doc(Method(), description="how the scene is computed; the defaults suit most scenes")
+    output: Output = doc(Output(), description="what is recorded, where and how often")
     model: Which | None = doc(None, description="full unless given; auto takes the smallest model that will do")
     exact: Exact | None = doc(None, description="exact solution that the run is compared with")
     sweep: Sweep | None = doc(None, description="what varies")

@@ -12,7 +12,7 @@ class Fit(Model):
     parameters: dict[str, Span] = doc(min_length=1, description="parameter: [lowest, highest], or {log: [lowest, highest]} to step evenly in its logarithm")
     data: tuple[str, ...] = doc((), description="curves of output.measured that count; all unless given")
     starts: Count = doc(1, description="how many times the search begins: at the config's own values, then at points spread over the ranges")
-    seed: Seed = 0
+    seed: Seed = doc(0, description="the same seed gives the same further starts")
 
 
 def ranges(fit: Any) -> Any:

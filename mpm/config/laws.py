@@ -23,7 +23,7 @@ class Constant(Kind):
     """The same value at every temperature."""
 
     kind: ClassVar[str] = "constant"
-    value: float
+    value: float = doc(description="the value")
 
     @model_validator(mode="before")
     @classmethod
@@ -37,7 +37,7 @@ class Table(Kind):
 
     kind: ClassVar[str] = "table"
     temperature: tuple[Temperature, ...] = doc(description="increasing temperatures", min_length=2)
-    value: tuple[float, ...]
+    value: tuple[float, ...] = doc(description="value at each temperature")
     interpolation: Annotated[Literal["linear", "pchip"], Choice()] = doc("linear", description="between the entries: straight lines, or monotone cubics")
 
     @model_validator(mode="after")
@@ -55,8 +55,8 @@ class Bump(Kind):
     """base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2)): latent heat spread over a few kelvin."""
 
     kind: ClassVar[str] = "bump"
-    base: float
-    heat: float
+    base: float = doc(description="value far from the bump")
+    heat: float = doc(description="integral of the bump over temperature: the latent heat, of a specific heat")
     at: Temperature = doc(description="temperature of the peak")
     width: TemperatureDifference = doc(description="standard deviation of the bump")
 
@@ -65,8 +65,8 @@ class Logistic(Kind):
     """low + (high - low)/(1 + exp(-(T - at)/width)): a smooth step."""
 
     kind: ClassVar[str] = "logistic"
-    low: float
-    high: float
+    low: float = doc(description="value far below the step")
+    high: float = doc(description="value far above the step")
     at: Temperature = doc(description="temperature of the middle of the step")
     width: TemperatureDifference = doc(description="e-folding width of the step")
 
@@ -82,11 +82,16 @@ class Porosity(Kind):
 def of_unit(base: type[Kind], quantity: Quantity, home: dict[str, Any], /, **fields: Any) -> type[Kind]:
     """A law's class for one quantity; a name of the module whose globals `home` are, so that experiments can be sent to other processes."""
     name = base.__name__ + "".join(letter for letter in quantity.name.title() if letter.isalpha())
-    made = create_model(name, __base__=base, __module__=home["__name__"], **fields)
+    made = create_model(name, __base__=base, __doc__=base.__doc__, __module__=home["__name__"], **fields)
     if name in home:
         raise ValueError(f"two parameters are called {quantity.name!r}")
     home[name] = made
     return made
+
+
+def said(base: type[Kind], field: str) -> Any:
+    """A required field that is described as in the base."""
+    return doc(description=base.model_fields[field].description)
 
 
 class Law(Menu):
@@ -98,9 +103,9 @@ class Law(Menu):
         integral = quantity.unit.removesuffix("/K") if quantity.unit.endswith("/K") else f"{quantity.unit}*K" if quantity.unit else "K"
         area = Annotated[float, Quantity(integral, f"{quantity.name} times kelvin", least=0, difference=True)]
         self.constant = of_unit(Constant, quantity, globals(), value=(value, ...))
-        table = of_unit(Table, quantity, globals(), value=(tuple[value, ...], ...))
-        bump = of_unit(Bump, quantity, globals(), base=(value, ...), heat=(area, ...))
-        logistic = of_unit(Logistic, quantity, globals(), low=(value, ...), high=(value, ...))
+        table = of_unit(Table, quantity, globals(), value=(tuple[value, ...], doc(description="value at each temperature")))
+        bump = of_unit(Bump, quantity, globals(), base=(value, said(Bump, "base")), heat=(area, said(Bump, "heat")))
+        logistic = of_unit(Logistic, quantity, globals(), low=(value, said(Logistic, "low")), high=(value, said(Logistic, "high")))
         super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic, *more)
         self.quantity = quantity
 

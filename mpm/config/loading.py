@@ -14,25 +14,25 @@ DIRECTIONS = ("xx", "yy", "zz")
 class Rates(Model):
     """A rate in some of the directions; positive in extension."""
 
-    xx: Rate | None = None
-    yy: Rate | None = None
-    zz: Rate | None = None
+    xx: Rate | None = doc(None, description="rate along x")
+    yy: Rate | None = doc(None, description="rate along y")
+    zz: Rate | None = doc(None, description="rate along z")
 
 
 class Stresses(Model):
     """A Cauchy stress in some of the directions; positive in tension."""
 
-    xx: Pressure | None = None
-    yy: Pressure | None = None
-    zz: Pressure | None = None
+    xx: Pressure | None = doc(None, description="stress along x")
+    yy: Pressure | None = doc(None, description="stress along y")
+    zz: Pressure | None = doc(None, description="stress along z")
 
 
 class Strains(Model):
     """Elastic Hencky (logarithmic) strains."""
 
-    xx: Number = 0.0
-    yy: Number = 0.0
-    zz: Number = 0.0
+    xx: Number = doc(0.0, description="strain along x")
+    yy: Number = doc(0.0, description="strain along y")
+    zz: Number = doc(0.0, description="strain along z")
 
 
 class Stage(Model):

@@ -123,8 +123,8 @@ class DissipationHeating(Model):
 class Heating(Model):
     """How deformation heats: each part is on when it is written, `elastic: {}`, `dissipation: {}`."""
 
-    elastic: ElasticHeating | None = None
-    dissipation: DissipationHeating | None = None
+    elastic: ElasticHeating | None = doc(None, description="heating and cooling by elastic change of volume")
+    dissipation: DissipationHeating | None = doc(None, description="heating by work that flow dissipates")
 
 
 ELASTIC: tuple[type[Kind], ...] = (Hencky, NeoHookean)

@@ -172,7 +172,7 @@ class Method(Model):
     )
     locking: one_of("cure of locking", *LOCKING) | None = doc(None, description="for nearly incompressible bodies that move")
     bounds: one_of("way to keep bounds", *BOUNDS) = doc(AutoBounds(), description="temperatures between those of body and surroundings, for bodies that move")
-    precision: Annotated[Literal["float64", "float32"], Choice()] = "float64"
+    precision: Annotated[Literal["float64", "float32"], Choice()] = doc("float64", description="of the numbers that particles and grid hold")
     particles: Annotated[int, Whole("number of particles", 1, 16)] = doc(2, description="particles a cell and direction")
     heat: one_of("heat integrator", *HEAT) = doc(AutoMoving(), description="how heat steps in moving bodies")
     heat_step: TimeOrAuto = doc("auto", description="time step of heat in moving bodies")

@@ -13,7 +13,7 @@ from mpm.config.quantities import Time
 class Snapshots(Model):
     """Fields on the grid and on particles, at times 0, every, 2 every, ..., end."""
 
-    every: Time
+    every: Time = doc(description="time between snapshots")
     grid: tuple[str, ...] = doc((), description="fields on the grid")
     particles: tuple[str, ...] = doc((), description="fields of the particles")
 
@@ -25,7 +25,7 @@ class Output(Model):
     probes: dict[str, Point] = doc({}, description="points that are followed, by name")
     observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
     overview: tuple[str, ...] = doc((), description="observables that the overview shows, the first first")
-    snapshots: Snapshots | None = None
+    snapshots: Snapshots | None = doc(None, description="whole fields at some times, for pictures, movies and exports")
     measured: dict[str, Measured] = doc({}, description="measured curves by name: drawn, compared with the run (misfit_<name>), fitted by `mpm fit`")
 
 

@@ -27,9 +27,9 @@ Text = Annotated[str, Field(max_length=200)]
 class TheoryLine(Model):
     """A line of theory on the map."""
 
-    label: Text
+    label: Text = doc(description="what the figure calls it")
     formula: Annotated[str, AfterValidator(readable)] = doc(description="y of x, in the units of the axes: 1/(1/0.49 + x/1.5)")
-    source: Text = ""
+    source: Text = doc("", description="where the formula is from")
     panels: tuple[str, ...] = doc((), description="labels of the panels that it is for; all unless given")
     role: Annotated[Literal["expected", "safe"], Choice()] = doc("expected", description="expected: the boundary should lie on it; safe: never below it")
 
@@ -52,6 +52,6 @@ class Stability(Model):
     resolution: Annotated[float, Quantity("", "resolution", above=0, most=1)] = doc(0.02, description="relative width of the bracket at which to stop")
     toward: Annotated[Literal["larger", "smaller"], Choice()] = doc("larger", description="where along the vertical axis things fail")
     beyond: dict[str, Positive] = doc({}, description="final: a completed point is beyond where it exceeds this (error_temperature: 0.05)")
-    growth: Growth | None = None
+    growth: Growth | None = doc(None, description="a completed run is beyond the boundary where this series grows")
     names: Annotated[dict[Literal["across", "along"], Text], Field()] = doc({}, description="how the axes are called on the figure")
-    lines: tuple[TheoryLine, ...] = ()
+    lines: tuple[TheoryLine, ...] = doc((), description="lines of theory that the figure draws")

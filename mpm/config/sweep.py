@@ -66,7 +66,7 @@ class Design(Kind):
     """A sample of several parameters at once; the same seed gives the same points."""
 
     count: Count = doc(description="number of points")
-    seed: Seed = 0
+    seed: Seed = doc(0, description="the same seed gives the same points")
     ranges: dict[str, Span] = doc(min_length=1, description="parameter: [first, last] or {log: [first, last]}")
 
 
@@ -117,8 +117,8 @@ class Sweep(Model):
 
     axes: dict[str, Axis] = doc({}, description="parameter: list of values, {linear: [first, last, count]} or {log: [first, last, count]}")
     zip: tuple[dict[str, Values], ...] = doc((), description="parameters that move together, one dimension an entry")
-    sample: one_of("design", *DESIGNS) | None = None
+    sample: one_of("design", *DESIGNS) | None = doc(None, description="points spread over ranges of several parameters: one dimension, `sample`")
     points: tuple[dict[str, Any], ...] = doc((), description="an explicit list of points")
     derive: dict[str, str] = doc({}, description="parameter: formula over others, in SI numbers, as in 'beta / kappa * 0.02'")
-    refine: Refine | None = None
+    refine: Refine | None = doc(None, description="more points where an observable changes most, or crosses a level")
     where: str | None = doc(None, description="a condition on swept parameters; points that fail it are skipped")

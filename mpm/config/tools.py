@@ -75,7 +75,7 @@ class Motion(Spell):
 class Tool(Spell):
     """A rigid body that does as it is told. It exchanges heat with what touches it, and is not cooled by it."""
 
-    shape: Shape
+    shape: Shape = doc(description="what the tool fills at the start")
     motion: Motion = doc(Motion(), description="stands still unless given")
     friction: Friction = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches")
     heat: WallHeat | None = doc(None, description="heat that the tool exchanges with what touches it")

@@ -1,0 +1,1 @@
+"""The docs as plain Markdown, installed as `mpm_docs`. `mpm docs` says where they are and prints a page."""
