@@ -13,6 +13,7 @@ Further files
     curves            curves in CSV files as laboratories and bakers write them
     exact             exact solutions of moving bodies, and of the ring
     exact_heat        exact solutions of heat that a run may be compared with, beside those in config.output
+    examples          an example of every key
     fit               what is fitted
     formula           A formula of one variable x, for lines of theory
     loading           what is prescribed to a material point

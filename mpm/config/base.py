@@ -21,6 +21,22 @@ class Model(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=False, protected_namespaces=(), hide_input_in_errors=True)
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict:
+        return cls.exemplified(handler(schema), handler)
+
+    @classmethod
+    def exemplified(cls, made: dict, handler: Any) -> dict:
+        """A JSON schema of the class in which every key has an example."""
+        from mpm.config.examples import example
+        from mpm.config.schema_paths import Slot
+
+        bases = tuple(base.__name__ for base in cls.__mro__)
+        for name, part in handler.resolve_ref_schema(made).get("properties", {}).items():
+            if slot := Slot(cls).step(name):
+                part["examples"] = [example(cls.__name__, name, slot, bases)]
+        return made
+
 
 class Kind(Model):
     """A model named by the single key of its mapping."""
@@ -69,7 +85,7 @@ class Menu:
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
         choices = []
         for name, kind in self.kinds.items():
-            inner = handler(kind.__pydantic_core_schema__)
+            inner = kind.exemplified(handler(kind.__pydantic_core_schema__), handler)
             choices.append({"type": "object", "properties": {name: inner}, "required": [name], "additionalProperties": False})
         bare = [name for name, kind in self.kinds.items() if kind.bare()]
         return {"oneOf": [*choices, *([{"enum": bare}] if bare else [])], "description": self.what}

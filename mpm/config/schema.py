@@ -2,13 +2,26 @@
 
 from typing import Any
 
-from mpm.config.experiment import Experiment
+from pydantic.json_schema import GenerateJsonSchema
+
+from mpm.config.base import Kind, Model
+from mpm.config.experiment import Experiment, plain
+
+
+class Plain(GenerateJsonSchema):
+    """Defaults as a config would write them."""
+
+    def encode_default(self, dft: Any) -> Any:
+        if isinstance(dft, Kind) and dft.bare() and not plain(dft, defaults=False)[dft.kind]:
+            return dft.kind
+        return plain(dft, defaults=False) if isinstance(dft, Model) else super().encode_default(dft)
 
 
 def schema() -> dict[str, Any]:
-    """JSON Schema (2020-12): kinds as oneOf, quantities as a number in SI or text with a unit, units in the descriptions."""
-    made = Experiment.model_json_schema()
-    made["properties"]["extends"] = {"type": "string", "description": "a config that this one changes, relative to this file"}
+    """JSON Schema (2020-12): kinds as oneOf, quantities as a number in SI or text with a unit, units in the descriptions,
+    examples and defaults as a config writes them."""
+    made = Experiment.model_json_schema(schema_generator=Plain)
+    made["properties"]["extends"] = {"type": "string", "description": "a config that this one changes, relative to this file", "examples": ["base.yaml"]}
     whole: dict[str, Any] = {"required": made.pop("required"), "properties": {}}
     for name, part in made["properties"].items():
         if needed := made["$defs"].get(part.get("$ref", "").rpartition("/")[2], {}).pop("required", None):
@@ -23,8 +36,6 @@ def tidy(part: Any) -> None:
     if isinstance(part, dict):
         if isinstance(part.get("title"), str):
             part.pop("title")
-        if isinstance(part.get("default"), dict):
-            part.pop("default")
         for choice in part.get("anyOf", ()):
             if "x-unit" in choice and "x-unit" not in part:  # a quantity or nothing
                 part["x-unit"] = choice.pop("x-unit")

@@ -23,8 +23,9 @@ class Range:
         return core_schema.no_info_plain_validator_function(self.validate)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
-        spaced = {"type": "array", "minItems": self.entries, "maxItems": self.entries}
-        plain = spaced if self.entries == 2 else {"type": "array", "minItems": 1}
+        ends = "first, last" + ", count" * (self.entries - 2)
+        spaced = {"type": "array", "minItems": self.entries, "maxItems": self.entries, "description": f"[{ends}]"}
+        plain = spaced if self.entries == 2 else {"type": "array", "minItems": 1, "description": "a list of values"}
         return {"anyOf": [plain, *({"type": "object", "properties": {word: spaced}, "required": [word], "additionalProperties": False} for word in self.words)]}
 
     @property
