@@ -25,6 +25,12 @@ def bench(
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps in each timed block.")] = 10,
     reps: Annotated[int, typer.Option("--reps", min=1, help="Number of timed blocks.")] = 9,
     order: Annotated[Literal["lattice", "shuffle"], typer.Option("--order", help="Initial order of the particles in memory.")] = "lattice",
+    compare: Annotated[
+        str | None,
+        typer.Option("--compare", metavar="REV", help="Time a revision of mpm (commit, tag, branch) beside this checkout.", show_default=False),
+    ] = None,
+    rounds: Annotated[int, typer.Option("--rounds", min=1, help="Rounds of --compare.")] = 5,
+    only: Annotated[str, typer.Option("--only", metavar="TEXT", help="With --compare, only scenes whose name has TEXT in it.")] = "",
     set_: Set = None,
     as_json: Json = False,
 ) -> None:
@@ -32,7 +38,10 @@ def bench(
 
     Without CONFIG it prints one JSON line, with the same fields as the timing programs of other codes. To compare codes, alternate whole runs on one core
     of an idle machine, use three rounds or more, take ratios of medians, and check first that `check` agrees.
+    --compare REV does so for another revision of mpm: ten scenes in turn, and the range of their ratios.
     """
+    if compare is not None:
+        return in_turn(compare, rounds, only, as_json)
     if config is None:
         from mpm.integrate.sorting import SHARED
         from mpm.study.bench import BenchError, Options, bench
@@ -56,3 +65,21 @@ def bench(
         document(found)
     else:
         say(table(found))
+
+
+def in_turn(revision: str, rounds: int, only: str, as_json: bool) -> None:
+    from mpm.study.bench import BenchError
+    from mpm.study.watch import HEAD, line
+    from mpm.study.watch import compare as compared
+
+    rows = []
+    try:
+        for row in compared(revision, rounds, only):
+            rows.append(row)
+            if not as_json:
+                say(line(row) if len(rows) > 1 else f"{HEAD}\n{line(row)}")
+    except BenchError as error:
+        warn(str(error))
+        raise typer.Exit(2) from None
+    if as_json:
+        document(rows)

@@ -30,6 +30,7 @@ Further files
     surfaces       three ways to exchange heat at a free surface, measured on bodies at rest
     theory         what transfers do to a field by themselves, measured beside the line of theory
     timing         time of runs, fairly
+    watch          `mpm bench --compare REV`
     wave           which transfer keeps a thermoelastic wave
 """
 
