@@ -4,6 +4,7 @@ Exit codes   0 ok; 1 internal error, disk (stdout's too), or (compare) different
 75, 130, 143 stopped; 141 all went well, and the reader of the output left
 """
 
+import os
 import sys
 import warnings
 
@@ -14,6 +15,7 @@ from mpm_cli.chart import chart
 from mpm_cli.collect import collect
 from mpm_cli.compare import compare
 from mpm_cli.docs import docs
+from mpm_cli.explain import explain
 from mpm_cli.export import export
 from mpm_cli.fit import fit
 from mpm_cli.info import info
@@ -52,6 +54,7 @@ COMMANDS = (
     export,
     report,
     bench,
+    explain,
     docs,
     schema,
     info,
@@ -69,11 +72,15 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for command in COMMANDS:
-    app.command(command.__name__)(command)
+    app.command(command.__name__, context_settings={"ignore_unknown_options": command is explain})(command)  # explain --timeout
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command and return its exit code."""
+    if "_MPM_COMPLETE" in os.environ:
+        from typer.completion import completion_init
+
+        completion_init()
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # what users should know has words of its own; `python -W` shows the rest
     with streams() as (out, err):

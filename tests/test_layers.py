@@ -21,7 +21,7 @@ LAYERS = {
     "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
     "error": 2, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4, "starting": 4,
-    "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
+    "reference": 5, "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6, "fit": 6, "sensitivity": 6, "opened": 6,
     "exports": 7, "movies": 7, "reports": 8,
 }  # fmt: skip

@@ -11,6 +11,7 @@ KINDS = (".py", ".yaml", ".md", ".toml", ".cff")
 FILES = sorted(path for path in [*ROOT.glob("*"), *(path for room in ROOMS for path in (ROOT / room).rglob("*"))] if path.suffix in KINDS)
 FILES.remove(Path(__file__))  # its examples dangle on purpose
 WRITERS = {f"mpm/study/{name}.py": "configs/verification" for name in ("single", "surfaces", "verification")}  # their text goes into that folder
+WRITERS["mpm/reference/pages.py"] = "docs"
 
 DOCUMENT = re.compile(r"(?<![\w/.-])((?:\.\./)*(?:[\w-]+/)*[\w-]+\.md)\b")
 NUMBERS = re.compile(r"\d+(?:\.\d+)*(?:(?:, | and |; )\d+(?:\.\d+)*)*(?![\w-]|\.\d)")

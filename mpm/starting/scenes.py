@@ -18,7 +18,9 @@ class Scene:
     file: Path
     title: str
     purpose: str
+    trust: str  # what is fitted and what is predicted
     cost: str
+    source: str
 
     @property
     def name(self) -> str:
@@ -29,9 +31,9 @@ def read(file: Path) -> Scene:
     """A config's title and opening comments."""
     text = file.read_text(encoding="utf-8")
     title = re.search(r'^title: "?(.*?)"?$', text, re.MULTILINE)
-    said = {word: re.search(rf"^# {word} +(.*(?:\n#   .*)*)", text, re.MULTILINE) for word in ("Purpose", "Cost")}
-    whole = {word: " ".join(part.strip("# ") for part in found[1].split("\n")) if found else "" for word, found in said.items()}
-    return Scene(file, title[1] if title else file.stem, whole["Purpose"], whole["Cost"])
+    said = [re.search(rf"^# {word} +(.*(?:\n#   .*)*)", text, re.MULTILINE) for word in ("Purpose", "Trust", "Cost", "Source")]
+    whole = [" ".join(part.strip("# ") for part in found[1].split("\n")) if found else "" for found in said]
+    return Scene(file, title[1] if title else file.stem, *whole)
 
 
 def scenes(room: str = "scenes") -> dict[str, Scene]:
