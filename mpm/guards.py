@@ -29,6 +29,7 @@ from mpm.warned import warning
 
 SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.005, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept
 GROWTH, NOISY = 0.05, 0.5  # of the largest energy so far; NOISY: affine FLIP keeps noise in velocities, and adds its slopes to it
+ROUNDED = 1e4  # round-offs: a strain below this is none, and its energy neither
 
 
 class Guards:
@@ -43,6 +44,7 @@ class Guards:
             and (scene.meeting is None or scene.meeting.drive is None)
         )
         self.growth = NOISY if isinstance(scene.scheme, Flip) and scene.scheme.affine else GROWTH
+        self.least = sum(rounded(body) for body in scene.bodies) if self.judged else 0.0
         self.begun = math.nan
         self.most = 0.0
         self.pieces: list[list[int]] | None = None  # of each body at the start (integrate/fragments.py)
@@ -92,7 +94,7 @@ class Guards:
         if math.isnan(self.begun):
             self.begun = now["energy_total"]
         gained = now["energy_total"] - self.begun
-        if self.judged and gained > self.growth * self.most and gained > 1e-12 * abs(self.begun):
+        if self.judged and gained > self.growth * self.most and gained > 1e-12 * abs(self.begun) + self.least:
             said = f"(more than at the start by {100 * gained / self.most:.0f} % of the largest)"
             return outcome(ENERGY_GROWTH, time=clock.time * scene.scale, step=clock.steps, detail=said)
         return self.gaps(scene, clock) if not scene.references else outcome(COMPLETED)
@@ -115,6 +117,12 @@ class Guards:
         if kind == "torn" and any(text.startswith(begins) for text in self.warned):
             return
         self.warned = [text for text in self.warned if not text.startswith(begins)] + [warning(kind, f"{name}: {said}")]
+
+
+def rounded(body) -> float:
+    """Elastic energy of a body at a strain of ROUNDED round-offs [J]: a scene at rest has no other."""
+    strain = ROUNDED * float(np.finfo(body.particles.V0.dtype).eps)
+    return 0.5 * (body.elastic.lam + 2.0 * body.elastic.mu) * strain**2 * float(np.sum(body.particles.V0, dtype=float))
 
 
 class Data:

@@ -2,7 +2,7 @@
 
 run_point(experiment, beat, compare, keeper, threads) -> Run      run_points(experiments) -> list of Runs, for material points
 warm(experiment): compile what it needs      compile_ahead(experiment): its two large kernels, at once
-estimate(experiment): what it will cost (mpm.costs)
+estimate(experiment): what it will cost (mpm.costs)      refuse(experiment): SceneError where no method here can run it, before anything is compiled
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
@@ -53,6 +53,19 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
         run.finals |= misfits(experiment, run)
         return complete(experiment, run)
     return run_named(experiment, beat, compare, keeper, threads)
+
+
+@placed
+def refuse(experiment) -> None:
+    """SceneError with its place where `run_point` would raise it: the scene is put together, of bodies that are only sampled to look at."""
+    from mpm.verification import exact_solution
+
+    estimate(experiment)
+    exact_solution(experiment)
+    if experiment.grid.dimension != 0 and not experiment.moving:
+        from mpm.scene.rigid import refuse_rigid
+
+        refuse_rigid(experiment)
 
 
 def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
@@ -227,4 +240,4 @@ def compile_heat(experiment) -> None:
     warm_bodies(scene, clock, work_arrays(scene), 0.0, min(scene.heat_step or now.pace, float(scene.times[1])), now)
 
 
-__all__ = ["estimate", "run_point", "run_points", "warm"]
+__all__ = ["estimate", "refuse", "run_point", "run_points", "warm"]

@@ -271,6 +271,23 @@ def test_temperatures_are_judged_at_just_the_share_that_is_allowed(core, allowed
             body.thermal.theta[:] = theta
 
 
+def test_the_round_off_of_bodies_at_rest_is_no_energy(core):
+    """Two bodies that touch and do not move have 1e-29 of what a strain of 1 holds."""
+    from mpm.scene.build import build
+    from mpm.simulation import Clock
+
+    scene = build(core.experiment(1, drop=("surfaces", "expansion", "heating")))
+    held = 0.5 * (scene.bodies[0].elastic.lam + 2 * scene.bodies[0].elastic.mu) * float(np.sum(scene.bodies[0].particles.V0))
+    for strain, kind in ((1e-13, "completed"), (1e-11, "energy_growth")):
+        guards, clock = Guards(scene), Clock(scene)
+        series = {"energy_kinetic": [0.0], "energy_elastic": [0.0], "energy_total": [0.0]}
+        assert guards.judged and guards.frame(scene, clock, series).ok
+        for name in ("energy_kinetic", "energy_total"):
+            series[name].append(held * strain**2)
+        series["energy_elastic"].append(0.0)
+        assert guards.frame(scene, clock, series).kind == kind
+
+
 def test_energy_is_judged_at_just_the_share_that_is_allowed(core):
     from mpm.scene.build import build
     from mpm.simulation import Clock

@@ -55,6 +55,11 @@ def refuse_gradual(experiment) -> None:
                     raise SceneError(("surfaces", index), f"{kind} {said}, or give the material `elastic`")
 
 
+def refuse_rigid(experiment) -> None:
+    """SceneError where no method can run bodies that do not move."""
+    refuse_covered(experiment, [body.shape for body in rigid_bodies(experiment)], joints(experiment))
+
+
 def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=None) -> Run:
     """Heat alone, bodies that do not move. `exact(x, t)` where the config names its solution; it is compared with unless told otherwise."""
     from mpm.records.variables import dataset_name, threshold

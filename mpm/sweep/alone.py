@@ -5,6 +5,7 @@ So a sweep over the same folder finds the points that were run alone, and the ot
 """
 
 import hashlib
+import importlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -59,6 +60,8 @@ def run_in(
 
     plan = plan_of(experiment, max_runs=max_runs)
     case, store = plan.cases[0], Store(out)
+    if (rerun or not store.places([case.run_id])) and (refuse := getattr(importlib.import_module(engine.RUNNER), "refuse", None)):
+        refuse(case.experiment)
     points = Points.of(plan_of(case.experiment))
     with taken(store, note):
         store.claim(experiment, swept_paths(plan), smoke, take_over=rerun in ("stale", "all") and not store.dataset.exists(), join=True)

@@ -12,11 +12,25 @@ import fake_runner as fake
 import pytest
 import xarray as xr
 
-from mpm.sweep import lock
+from mpm import compiling
+from mpm.sweep import engine, lock
 
 FAKES = str(Path(__file__).parents[1] / "fakes")
 CODE = f"import sys; sys.path.insert(0, {FAKES!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'; from mpm_cli.main import main; "
 CODE += "sys.exit(main(sys.argv[1:]))"
+TWO = """\
+title: two bodies side by side
+
+grid: {dimension: 1, size: [24 mm], cell: 1 mm}
+bodies:
+  a: {shape: {box: {lower: [0], upper: [8 mm]}}, material: m, temperature: 300}
+  b: {shape: {box: {lower: [8 mm], upper: [16 mm]}}, material: m, temperature: 350}
+materials:
+  m: {density: 1000, heat: {fourier: {kappa: 1, alpha: 200}}, elastic: {hencky: {E: 1 kPa, nu: 0.3}}}
+time: {end: 0.05}
+output: {every: 0.005, observables: [temperature.mean]}
+method: {rigid: explicit}
+"""
 WHERE = ("-o", "out with space", "--set", "title=a b")
 
 
@@ -70,6 +84,23 @@ def test_a_failed_point_is_finished_too(mpm, write, marks):
     config = write([fake.DIVERGES])
     assert mpm("run", config, "-o", "out")[0] == mpm("run", config, "-o", "out")[0] == 4 and marks("run") == ["17.0"]
     assert mpm("run", config, "-o", "out", "--rerun", "failed")[0] == 4 and marks("run") == ["17.0", "17.0"]
+
+
+SCENES = {  # a valid config that no method here can run: (what is changed, where it is told)
+    "moving": ("upper: [8 mm]", "upper: [12 mm]", "6:7: bodies.b.shape: bodies a and b overlap at the start"),
+    "rigid": (", elastic: {hencky: {E: 1 kPa, nu: 0.3}}", "", "11:10: method.rigid: a and b touch and pass heat"),
+    "method": ("{rigid: explicit}", "{transfer: {xpic: {order: 3}}}", "11:10: method.transfer: xpic does not know bodies that meet"),
+}
+
+
+@pytest.mark.parametrize("kind", SCENES)
+def test_a_scene_that_no_method_runs_is_refused_before_anything_is_compiled_or_written(mpm, tmp_path, monkeypatch, kind):
+    before, after, said = SCENES[kind]
+    monkeypatch.setattr(engine, "RUNNER", "mpm.runner")
+    monkeypatch.setattr(compiling, "begun", lambda: pytest.fail("compiled"))
+    (tmp_path / "two.yaml").write_text(TWO.replace(before, after))
+    code, out, err = mpm("run", "two.yaml", "-o", "out")
+    assert code == 2 and out == "" and "two.yaml:" in err and said in err and [path.name for path in tmp_path.iterdir()] == ["two.yaml"]
 
 
 def test_another_experiment_is_refused_and_changes_nothing(mpm, write, tmp_path):
