@@ -1,12 +1,22 @@
-"""Small scenes that the tests of the core share. One set of physics for most of them, so that each dimension and transfer compiles once."""
+"""Small scenes that the tests of the core share. One set of physics for most of them, so that each dimension and transfer compiles once.
+
+A module with `pytestmark = pytest.mark.plain` runs in a child process without the compiler: its small scenes take a second in plain Python, where compiling
+their physics would take twenty. tests/test_roles.py holds compiled and plain results together.
+"""
 
 import copy
 import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from numba import config as numba_config
 
 import mpm
 
@@ -107,3 +117,50 @@ def core():
         table=table,
         order=order,
     )
+
+
+def pytest_configure(config):
+    if place := os.environ.pop("MPM_TEST_REPORTS", None):
+        config.pluginmanager.register(Told(config, place))
+
+
+class Told:
+    """In the child of a plain module: reports, a line each."""
+
+    def __init__(self, config, place):
+        self.config, self.place = config, place
+
+    def pytest_runtest_logreport(self, report):
+        data = self.config.hook.pytest_report_to_serializable(config=self.config, report=report)
+        with open(self.place, "a") as file:
+            file.write(json.dumps(data) + "\n")
+
+
+def pytest_runtest_protocol(item, nextitem):
+    """A plain test is reported as the child of its module reported it."""
+    if item.get_closest_marker("plain") is None or numba_config.DISABLE_JIT:
+        return None
+    children = item.session.__dict__.setdefault("plain_modules", {})
+    if item.path not in children:
+        children[item.path] = without_compiler(item.config, [one.nodeid for one in item.session.items if one.path == item.path])
+    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+    for report in children[item.path][item.nodeid]:
+        item.ihook.pytest_runtest_logreport(report=report)
+    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+    item.session._setupstate.teardown_exact(nextitem)  # what the test before left for tests of this folder
+    return True
+
+
+def without_compiler(config, tests):
+    """Run tests of one module in a child process: their reports."""
+    with tempfile.NamedTemporaryFile("r") as told:
+        command = [sys.executable, "-m", "pytest", "--numprocesses=0", "-m", config.option.markexpr, *tests]
+        env = os.environ | {"NUMBA_DISABLE_JIT": "1", "MPM_TEST_REPORTS": told.name}
+        done = subprocess.run(command, cwd=config.rootpath, env=env, capture_output=True, text=True, check=False)
+        reports = {test: [] for test in tests}
+        for line in told:
+            report = config.hook.pytest_report_from_serializable(config=config, data=json.loads(line))
+            reports[report.nodeid].append(report)
+    if not all(reports.values()):
+        raise RuntimeError(f"tests without the compiler did not run to their end\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
+    return reports

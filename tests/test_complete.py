@@ -22,6 +22,8 @@ from mpm.scene.inventory import physics
 from mpm.scene.rigid import rigid_bodies
 from mpm.scene.shapes import cut_quadrature
 
+pytestmark = pytest.mark.plain
+
 HEAT = {"fourier": {"kappa": 0.1, "alpha": 1.5}}
 MATTER = {"rigid": {"density": 2.0, "heat": HEAT}, "moving": {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}, "heat": HEAT}}
 POINT = {"point": {"surface_to_volume": 2.0}}

@@ -7,6 +7,8 @@ from mpm.boundary import CONTACT, SLIP, STICK
 from mpm.boundary.walls import fold, impose, unfold
 from mpm.state import PAD
 
+pytestmark = pytest.mark.plain
+
 H = 0.25
 
 

@@ -12,6 +12,7 @@ from mpm.materials import table
 from mpm.scene.build import build
 
 OVEN = {"table": {"time": [0, 0.2, 0.5], "value": [300, 500, 400]}}
+UNCOUPLED = {"expansion": {"modulus": {"gamma": 0.0, "reference": 350.0}}, "heating": {"elastic": {}}}  # of zero: the steps that other tests compile too
 SINE = {"sine": {"mean": 350, "amplitude": 40, "period": 0.4}}
 
 
@@ -19,7 +20,7 @@ def bar(surfaces, elastic=True, end=0.5, start=350.0, kappa=1.0, **method):
     """One metre in eight cells; without `elastic` a rigid body."""
     solid = {"density": 2.0, "heat": {"fourier": {"kappa": kappa, "alpha": 1.5}}}
     if elastic:
-        solid["elastic"] = {"hencky": {"lam": 0.03, "mu": 0.02}}
+        solid |= {"elastic": {"hencky": {"lam": 0.03, "mu": 0.02}}} | UNCOUPLED
     return mpm.load(
         {
             "grid": {"dimension": 1, "size": [1.5], "cell": 0.125},
@@ -113,7 +114,7 @@ def test_no_conduction_no_exchange():
 
 def pan(lower, beta=50.0, air=True):
     """A block `lower` above the floor of a plane scene, whose floor is a pan at 450 K."""
-    solid = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1.5}}}
+    solid = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1.5}}} | UNCOUPLED
     return mpm.load(
         {
             "grid": {"dimension": 2, "size": [1.0, 1.0], "cell": 0.125},

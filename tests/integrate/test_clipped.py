@@ -3,9 +3,12 @@
 import math
 
 import numpy as np
+import pytest
 
 from mpm.diagnostics import strains
 from mpm.materials import EllipseClipped
+
+pytestmark = pytest.mark.plain
 
 M, MU = 0.02, 2.0
 

@@ -8,6 +8,8 @@ from mpm.diagnostics import exchanging_area
 from mpm.integrate.fracture_surface import tear
 from mpm.scene.build import build
 
+pytestmark = pytest.mark.plain
+
 GRIDS = {1: [6.0], 2: [6.0, 2.0], "axisymmetric": [2.0, 6.0], 3: [6.0, 1.5, 1.5]}
 LENGTH = {1: 0, 2: 0, "axisymmetric": 1, 3: 0}  # the axis along the bar
 ENDS = {1: 1.0, 2: 0.75, "axisymmetric": 0.75**2 / 2, 3: 0.75 * 0.5}  # area across it

@@ -16,7 +16,7 @@ def test_any_beta(core, heat):
     for beta in BETAS:
         air = [{"of": "body", "convection": {"beta": beta, "outside": core.COLD}}]
         changes = {"method.heat": heat, "time.end": 0.1, "output.every": 0.1}
-        experiment = core.experiment(1, changes, surfaces=air, drop=("expansion", "heating"))
+        experiment = core.experiment(1, changes, surfaces=air)
         scene = build(experiment)
         least.append(limits(scene.space, 1, scene.bodies, Clock(scene).reports).substep())
         run = core.play(experiment)[1]
