@@ -69,19 +69,29 @@ def test_accepts_right_and_refuses_wrong(scene, request):
     assert not accepts(made, {**data, "method": {"transfer": "flop"}}, made)
 
 
+@pytest.fixture(scope="module")
+def made():
+    return schema()
+
+
+@pytest.fixture(scope="module")
+def validator(made):
+    """Of another's hand; that the schema is one is checked first."""
+    jsonschema = pytest.importorskip("jsonschema")
+    jsonschema.Draft202012Validator.check_schema(made)
+    return jsonschema.Draft202012Validator(made)
+
+
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)
-def test_accepts_what_is_shipped(file):
+def test_accepts_what_is_shipped(file, made):
     root, problems = read(file.read_text(encoding="utf-8"), Origin(file.name))
     assert not problems
-    made = schema()
     assert accepts(made, root.plain(), made)
 
 
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)
-def test_independent_validator(file):
-    jsonschema = pytest.importorskip("jsonschema")
-    jsonschema.Draft202012Validator.check_schema(schema())
-    jsonschema.validate(read(file.read_text(encoding="utf-8"), Origin(file.name))[0].plain(), schema())
+def test_independent_validator(file, validator):
+    validator.validate(read(file.read_text(encoding="utf-8"), Origin(file.name))[0].plain())
 
 
 def test_units_and_kinds_are_described():
