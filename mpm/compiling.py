@@ -1,5 +1,6 @@
 """What is being compiled, how much of it is left, and what this process has spent on it.
 
+    expect(experiment)            this process runs it first: how many kernels that may take is told beside each
     seconds()                     wall time that this process has spent on compiling kernels
     say(listener)                 context: `listener(text, expected, took)` hears of a kernel as it begins, after each function, and when it is ready (text "")
     remember(experiment)          its kernels are in the cache of this machine now
@@ -27,6 +28,7 @@ NAMES = {
 }  # fmt: skip
 USUAL = (25, 0.5)  # functions, and seconds, of a kernel never met
 MET = {"advance": (190, 6.0), "heat_chebyshev": (120, 4.0), "heat_step": (100, 3.0), "heat_implicit": (120, 4.0)}  # of the large ones
+KERNELS = {"at rest": 8, "moving": 12}  # that a scene takes, where this machine has met none of its sort
 LINKING = 0.3  # of a kernel's time, after its last function: linking, optimising, machine code
 MOVING, RESTING = 1.5, 3.0  # seconds of the small kernels of bodies that move, and of those of all that rests
 UNLIKE = ("title", "output", "time", "sweep", "smoke", "chart", "stability")  # parts of a config that compile nothing
@@ -37,6 +39,7 @@ class Spent:
 
     def __init__(self) -> None:
         self.total, self.began, self.functions = 0.0, 0.0, 0
+        self.kernels, self.about = 0, 0  # compiled so far, and how many a scene of this sort took
         self.begun = self.remembered = False
         self.heard: list[Callable[[str, float, float], None]] = []
 
@@ -45,6 +48,7 @@ class Spent:
         now, kernel = time.perf_counter(), compiled.__name__
         if function is compiled:
             self.began, self.functions = now, 0
+            self.kernels += 1
         elif function is None:
             took = now - self.began
             self.total += took
@@ -57,7 +61,8 @@ class Spent:
         about, seconds = met().get(kernel, MET.get(kernel, USUAL))
         about = max(about, self.functions)
         left = max(seconds - (now - self.began), LINKING * seconds)
-        text = f"compiling {NAMES.get(kernel, kernel)}, once on this machine: {self.functions} of about {about} functions, {left:.0f} s left"
+        which = f"{self.kernels} of about {max(self.kernels, self.about)} kernels, {NAMES.get(kernel, kernel)}"
+        text = f"compiling {which}, once on this machine: {self.functions} of about {about} functions, {left:.0f} s left"
         for listener in self.heard:
             listener(text, seconds, 0.0)
 
@@ -126,6 +131,17 @@ def place(config: dict) -> Path:
     return folder() / "known" / made
 
 
+def sort(experiment: Any) -> str:
+    """Scenes that call as many kernels."""
+    heat = any(material.heat is not None for material in experiment.materials.values())
+    return f"{'moving' if experiment.moving else 'at rest'}, {experiment.grid.dimension}, {experiment.method.mechanics}{', heat' if heat else ''}"
+
+
+def expect(experiment: Any) -> None:
+    """How many kernels this process may have to compile: as many as such a scene took on this machine."""
+    spent.about, _ = met().get(f"scene {sort(experiment)}", (KERNELS["moving" if experiment.moving else "at rest"], 0.0))
+
+
 def begun() -> bool:
     """Whether this was asked before: the first run of a process is the one that may have to compile."""
     before, spent.begun = spent.begun, True
@@ -136,6 +152,8 @@ def remember(experiment: Any, again: bool) -> None:
     """The kernels of this experiment are in the cache. Noted once a process, and `again` where it had to compile some."""
     if again or not spent.remembered:
         spent.remembered = True
+        if (name := f"scene {sort(experiment)}") and spent.kernels > met().get(name, (0, 0.0))[0]:
+            keep(name, spent.kernels, 0.0)
         with contextlib.suppress(OSError):
             path = place(experiment.resolved())
             path.parent.mkdir(exist_ok=True)

@@ -44,6 +44,7 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
     threads    that share the work of one large run (mpm.integrate.step_threaded); the result is the same for any number
     """
     if not compiling.begun():
+        compiling.expect(experiment)
         compile_ahead(experiment)
     if getattr(experiment.model, "kind", "full") == "auto":
         from mpm.reduce.choose import smallest

@@ -11,11 +11,14 @@ from matplotlib.colors import Normalize
 from mpm.movies import MovieError
 from mpm.opened import Point, Results
 from mpm.plots import words
-from mpm.plots.style import INK, QUIET
+from mpm.plots.outlines import draw_tools, draw_walls, tools
+from mpm.plots.style import QUIET
 from mpm.records.variables import VARIABLES
 from mpm.text import visible
 
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
+BESIDE = 0.3  # of the particles' extent
+BALLS = 3.0  # square points of a dot that is large enough to be shaded as a ball
 SAMPLES = 12  # snapshots that the limits of colour and space are taken from
 SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
 
@@ -28,7 +31,7 @@ class Look:
     on_grid: bool
     dimension: Any
     mirrored: bool
-    size: list[float]  # of the domain [m]
+    config: dict[str, Any]  # resolved
     box: np.ndarray  # (2, 2): lower and upper corner of what is shown [m]
     length: words.Scale
     scale: words.Scale
@@ -36,7 +39,6 @@ class Look:
     mappable: Any
     label: str
     axes: dict[str, np.ndarray]
-    walls: dict[str, str]
 
     @property
     def aspect(self) -> float:
@@ -57,20 +59,30 @@ def looks(found: Results, shown: list[Point], of: str | None) -> Look:
     if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
         low, high = low - 0.5, high + 0.5  # one value everywhere
     dimension, config = found.dimension, found.view.config
-    size = [float(length) for length in (config.get("grid") or {}).get("size", ())]
     axes, mirrored = dict(shown[0].shots.axes), dimension == "axisymmetric"
     places = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(axes, dimension)]
     places = np.concatenate([place[:, :2] for place in places])
     box = np.array([places.min(axis=0), places.max(axis=0)])
     if mirrored:
         box[0, 0], box[1, 0] = -np.abs(box[:, 0]).max(), np.abs(box[:, 0]).max()
+    box = with_tools(box, config, some, mirrored)
     margin = 0.06 * max(np.ptp(box, axis=0).max(), 1e-12)
     box = box + np.array([[-margin], [margin]])
     name = words.title_case(words.short(VARIABLES[field].long_name)) if field in VARIABLES else field
     bare = ScalarMappable(Normalize(low, high), matplotlib.colormaps["inferno"])
-    walls = {side: next(iter(wall)) if isinstance(wall, dict) and wall else str(wall) for side, wall in (config.get("walls") or {}).items()}
     times = words.scale(shown[0].shots.times, "s")
-    return Look(field, on_grid, dimension, mirrored, size, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units), axes, walls)
+    return Look(field, on_grid, dimension, mirrored, config, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units), axes)
+
+
+def with_tools(box: np.ndarray, config: dict[str, Any], some: list[Any], mirrored: bool) -> np.ndarray:
+    """What is shown, and of the tools as much as lies within BESIDE of its size around it."""
+    lines = [flat(line, (config.get("grid") or {}).get("dimension"))[:, :2] for frame in some for _, every, _ in tools(config, frame.time) for line in every]
+    if not lines:
+        return box
+    corners, around = np.concatenate(lines), BESIDE * np.ptp(box, axis=0).max()
+    corners = np.concatenate([corners, corners * [-1.0, 1.0]]) if mirrored else corners
+    low, high = np.clip([corners.min(axis=0), corners.max(axis=0)], box[0] - around, box[1] + around)
+    return np.array([np.minimum(box[0], low), np.maximum(box[1], high)])
 
 
 def chosen(frame: Any, of: str | None) -> tuple[str, bool]:
@@ -113,13 +125,15 @@ class Stage:
     """A panel. `show(frame)` draws a snapshot in the place of the one before."""
 
     def __init__(self, ax: Any, look: Look, label: str):
-        self.ax, self.look, self.named, self.artist, self.lines = ax, look, label, None, None
+        self.ax, self.look, self.named, self.drawn = ax, look, label, []
         ax.set_aspect("equal" if look.dimension != 1 else "auto")
         ax.grid(False)
         ax.set_xlim(*look.length(look.box[:, 0]))
         ax.set_ylim(*look.length(look.box[:, 1]))
-        if look.dimension in (2, "axisymmetric"):
-            self.walls()
+        if look.dimension != 1:
+            draw_walls(ax, look.config, self.place, look.mirrored)
+        if look.mirrored:
+            ax.axvline(0.0, color=QUIET, lw=0.6, ls=(0, (4, 3)), zorder=4)
 
     def label(self, left: bool, foot: bool) -> None:
         """Names of the axes."""
@@ -130,24 +144,18 @@ class Stage:
         if left and letters[1].strip():
             self.ax.set_ylabel(words.with_units(letters[1], look.length.units))
 
-    def walls(self) -> None:
-        """The outline of the domain; sides that the config names as a wall of their own are thick. `clip_on` keeps what is out of sight out."""
-        look = self.look
-        width, height = look.length(np.array(look.size[:2]))
-        left = -width if look.mirrored else 0.0
-        across, upward = [left, width], [0.0, height]
-        lines = {"left": ([left] * 2, upward), "right": ([width] * 2, upward), "bottom": (across, [0.0] * 2), "top": (across, [height] * 2)}
-        for side, (x, y) in lines.items():
-            named = side in look.walls
-            self.ax.plot(x, y, color=INK if named else QUIET, lw=2.2 if named else 0.7, zorder=4)
-        if look.mirrored:
-            self.ax.axvline(0.0, color=QUIET, lw=0.6, ls=(0, (4, 3)), zorder=4)
+    def place(self, x: np.ndarray) -> np.ndarray:
+        """Where places (K, D) [m] lie on the panel (K, 2)."""
+        if self.look.on_grid and self.look.dimension == 3:  # the slice through the middle
+            return self.look.length(x[:, [0, 2]])
+        return self.look.length(flat(x, self.look.dimension)[:, :2])
 
     def show(self, frame: Any, lines: bool = False) -> None:
         """Draw a snapshot; on the grid with `lines` of equal value."""
         look = self.look
-        if self.artist is not None:
-            self.artist.remove()
+        for artist in self.drawn:
+            artist.remove()
+        self.drawn = draw_tools(self.ax, look.config, frame.time, self.place, look.mirrored) if look.dimension != 1 else []
         values = look.scale(valued(frame, look.field, look.on_grid))
         (self.on_grid if look.on_grid else self.particles)(frame, values, lines)
         when = f"t = {words.number(float(look.clock(frame.time)))} {look.clock.units}".strip()
@@ -159,12 +167,26 @@ class Stage:
         colours = look.mappable.to_rgba(values)
         if look.mirrored:
             place, colours = np.concatenate([place * [-1, 1, 1], place]), np.concatenate([colours, colours])
+        size = self.dot(len(place))
         if look.dimension == 3:
             order = np.argsort(place[:, 2], kind="stable")
             place, colours = place[order], colours[order]
             near = (place[:, 2] - place[0, 2]) / max(np.ptp(place[:, 2]), 1e-300)
-            colours[:, :3] *= (0.5 + 0.5 * near)[:, None]
-        self.artist = self.ax.scatter(*look.length(place[:, :2]).T, c=colours, s=self.dot(len(place)), lw=0, zorder=3, rasterized=True)
+            colours[:, :3] *= (0.55 + 0.45 * near)[:, None]
+        places, size = look.length(place[:, :2]), np.full(len(place), size)
+        if look.dimension == 3 and size[0] > BALLS:
+            places, colours, size = self.balls(places, colours, size[0])
+        self.drawn.append(self.ax.scatter(*places.T, c=colours, s=size, lw=0, zorder=3, rasterized=True))
+
+    def balls(self, places: np.ndarray, colours: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Each particle as three dots, one on the other: its rim, itself and a light from above on the left. Those behind stay behind."""
+        points = np.ptp(self.ax.get_xlim()) / (self.ax.get_position().width * self.ax.figure.get_figwidth() * 72)  # of the panel's unit
+        shift, share = np.array([0.0, -0.06, -0.16]) * 2 * np.sqrt(size) * points, np.array([1.0, 0.68, 0.1])
+        every = np.repeat(places, 3, axis=0) + np.tile(np.outer(shift, [1.0, -1.0]), (len(places), 1))
+        tints = np.repeat(colours, 3, axis=0)
+        tints[0::3, :3] *= 0.62
+        tints[2::3, :3] += 0.55 * (1.0 - tints[2::3, :3])
+        return every, tints, np.tile(share * size, len(places))
 
     def dot(self, count: int) -> float:
         """Area of a dot in square points, so that particles that fill a third of the panel about touch."""
@@ -179,12 +201,25 @@ class Stage:
             values, axes = values[:, values.shape[1] // 2], [axes[0], axes[2]]
         across, up = look.length(axes[-1]), look.length(axes[0]) if values.ndim == 2 else None
         if up is None:
-            self.artist = self.ax.scatter(across, np.zeros(len(across)), c=look.mappable.to_rgba(values), s=60, lw=0)
+            self.drawn.append(self.ax.scatter(across, np.zeros(len(across)), c=look.mappable.to_rgba(values), s=60, lw=0))
             return
         if look.mirrored:
             across, values = np.concatenate([-across[:0:-1], across]), np.concatenate([values[:, :0:-1], values], axis=1)
-        self.artist = self.ax.pcolormesh(across, up, values, cmap=look.mappable.cmap, norm=look.mappable.norm, shading="nearest", rasterized=True)
+        shades = {"cmap": look.mappable.cmap, "norm": look.mappable.norm, "shading": "nearest", "rasterized": True}
+        self.drawn.append(self.ax.pcolormesh(across, up, values, **shades))
         finite = values[np.isfinite(values)]
         if lines and finite.size and np.ptp(finite) > 1e-6 * max(1.0, np.abs(finite).max()):
             found = self.ax.contour(across, up, values, levels=6, colors="white", linewidths=0.7, linestyles="solid")
-            self.ax.clabel(found, fontsize=7, fmt=words.number)
+            if places := long_enough(found, 0.3 * np.ptp(self.ax.get_xlim())):
+                self.ax.clabel(found, fontsize=7, fmt=words.number, manual=places)
+
+
+def long_enough(contours: Any, least: float) -> list[tuple[float, float]]:
+    """A place for the label of each level: the middle of its longest line, if that is long enough for a number."""
+    found = []
+    for lines in contours.allsegs:
+        lengths = [np.abs(np.diff(line, axis=0)).sum() for line in lines if len(line) > 1]
+        if lengths and max(lengths) >= least:
+            longest = [line for line in lines if len(line) > 1][int(np.argmax(lengths))]
+            found.append(tuple(longest[len(longest) // 2]))
+    return found

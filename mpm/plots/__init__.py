@@ -2,6 +2,7 @@
 
     overview(tree, path)           the figure that `mpm sweep` leaves beside its dataset, chosen by what the dataset holds
     figures(out, names, path)      what `mpm plot OUT [NAME...]` writes
+    final(tree, of, over, ax)      one result over a swept parameter;   over_time(tree, of, ax)   series: on axes of the user's own, or on a figure of theirs
     KINDS                          names of figures: overview, series, finals, snapshot
 
 Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the first listed observable) over the longest axis, a line a value of the other;
@@ -22,6 +23,7 @@ To add      a function View -> Figure in layouts.py or a sibling, and a line in 
 Further files
     chart       the figure of a chart (`chart.nc`)
     fit         the figure of `mpm fit`
+    outlines    walls of the domain and tools, as lines in space
     sensitivity the figure of `mpm sensitivity`
     stability   the figure of `mpm stability`
     style       how figures look
@@ -47,6 +49,54 @@ class UnknownFigure(ValueError):
 def overview(tree: Any, path: Path | str | None = None) -> Any:
     """The figure of a dataset tree, and the file `path` (PNG, SVG or PDF) where one is given. Never raises for points that failed."""
     return _finish(_draw(tree, "overview"), path)
+
+
+def final(tree: Any, of: str | None = None, over: str | None = None, ax: Any = None) -> Any:
+    """One result over a swept parameter, a line a value of another; the matplotlib figure.
+
+    of      name of a result in `/`; the most interesting unless given
+    over    name of a swept parameter; the longest unless given
+    ax      matplotlib axes to draw on; a new figure unless given
+    Raises UnknownFigure where nothing varies along an axis, for an unknown name, and where no point is ok.
+    """
+    from mpm.plots import finals, layouts
+    from mpm.plots.style import figure, styled
+
+    view = _viewed(tree, of, over)
+    if not view.axes or not view.finals:
+        raise UnknownFigure("a result is drawn over the axes of a sweep; this dataset has no axis or no result")
+    with styled():
+        ax = figure(view.title, 5.2).add_subplot() if ax is None else ax
+        x, lines, _ = layouts.arrange(view, view.finals[0])
+        finals.panel(ax, view, view.finals[0], x, lines, dict(view.chosen))
+    return ax.figure
+
+
+def over_time(tree: Any, of: str | Iterable[str] | None = None, ax: Any = None) -> Any:
+    """Series of a run, or of a few points of a sweep coloured by the swept value, with measured curves as dots; the matplotlib figure.
+
+    of    names of series in one unit; the probes' temperatures or the first family unless given
+    ax    matplotlib axes to draw on; a new figure unless given
+    Raises UnknownFigure for an unknown name, and where there are no series.
+    """
+    from mpm.plots import layouts, series
+    from mpm.plots.style import figure, styled
+
+    view = _viewed(tree)
+    there = [] if view.series is None else [str(name) for name, row in view.series.data_vars.items() if "time" in row.dims]
+    names = layouts.series_of(view) if of is None else [of] if isinstance(of, str) else list(of)
+    if unknown := [name for name in names if name not in there]:
+        raise UnknownFigure(f"there is no series {', '.join(map(repr, unknown))}; there are {', '.join(there) or 'none'}")
+    if not names:
+        raise UnknownFigure("the dataset holds no series")
+    along = view.parameters[0] if view.design is not None and view.parameters else None
+    if along is None and view.axes:
+        x, lines, _ = layouts.arrange(view)
+        along = lines or x
+    with styled():
+        ax = figure(view.title, 4.8).add_subplot() if ax is None else ax
+        series.panel(ax, view, names, along, dict(view.chosen))
+    return ax.figure
 
 
 def figures(
@@ -101,15 +151,21 @@ def drawn(tree: Any, name: str) -> Any:
 def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) -> Any:
     """A figure by its name."""
     from mpm.plots import layouts, snapshot
-    from mpm.plots.view import View
 
     kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals, "snapshot": snapshot.snapshot}
+    return kinds[name](_viewed(tree, of, over))
+
+
+def _viewed(tree: Any, of: str | None = None, over: str | None = None) -> Any:
+    """A dataset as figures see it, with what is to be drawn; UnknownFigure for names that it does not have."""
+    from mpm.plots.view import View
+
     view = View(tree)
     for asked, known, what in ((of, view.finals, "final"), (over, [axis.name for axis in view.axes], "swept parameter")):
         if asked is not None and asked not in known:
             raise UnknownFigure(f"there is no {what} {asked!r}; there are {', '.join(known) or 'none'}")
     view.wanted, view.along = of, over
-    return kinds[name](view)
+    return view
 
 
 def _finish(fig: Any, path: Path | str | None) -> Any:

@@ -10,6 +10,7 @@ from mpm.plots import words
 from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
 
 FEW = 64  # values that are told apart by their digits
+LETTERS = 105.0  # of ticks across a figure
 LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
 
 
@@ -78,11 +79,31 @@ class Axis:
             ax.set_xscale("log")
         if self.size <= 9 or self.category or not np.isfinite(self.values).all():
             chosen = spread(self.size, 12)
-            ax.set_xticks(self.positions[chosen], [self.text(i) for i in chosen])
+            ax.set_xticks(self.positions[chosen], apart(self.positions[chosen], [self.text(i) for i in chosen], self.log, room(ax)))
             ax.minorticks_off()
         elif self.log:
             plain_ticks(ax.xaxis)
         ax.set_xlabel(self.label)
+
+
+def room(ax: Any) -> float:
+    """About how many letters of ticks fit along the horizontal axis."""
+    place = ax.get_subplotspec()
+    return LETTERS / (place.get_gridspec().ncols if place is not None else 1)
+
+
+def apart(positions: np.ndarray, texts: list[str], log: bool, letters: float) -> list[str]:
+    """The texts of ticks, blank where they would run into their neighbours: both ends stay, then from the left what fits."""
+    at = np.log(positions) if log else positions
+    at = (at - at.min()) / max(float(np.ptp(at)), 1e-300) * letters
+    order, half = np.argsort(at, kind="stable"), [0.5 * len(text) + 0.6 for text in texts]
+    first, last, shown = order[0], order[-1], {int(order[0]), int(order[-1])}
+    near = first
+    for i in order[1:-1]:
+        if at[i] - half[i] >= at[near] + half[near] and at[i] + half[i] <= at[last] - half[last]:
+            shown.add(int(i))
+            near = i
+    return [text if i in shown else "" for i, text in enumerate(texts)]
 
 
 def log_spaced(values: np.ndarray) -> bool:

@@ -12,14 +12,15 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.transforms import blended_transform_factory
 
-from mpm.plots import words
-from mpm.plots.finals import wide
+from mpm.plots import series, words
+from mpm.plots.finals import until, wide
 from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, empty, figure, plain_ticks
 from mpm.plots.view import Axis, View
 
 FEWEST = 10
 RESAMPLES = 2000
 MOST_PARAMETERS = 6
+TRIANGLE = {"color": OKABE_ITO[0], "mfc": "white", "ms": 5, "mew": 1.2, "ls": "None", "marker": "^"}  # a threshold that was not reached
 RING = {"color": OKABE_ITO[0], "mfc": "white", "ms": 4, "mew": 1.2, "ls": "None"}  # a point with warnings
 
 
@@ -31,8 +32,11 @@ def scatter(view: View, most: int = 3) -> Any:
         return empty(view, "The sample varies no number." if not parameters else "No result has a value.")
     columns, order = len(parameters), view.dims
     blocks = [spread_over(view, axis) for axis in parameters]
-    fig = figure(view.title, 1.1 + 2.35 * len(names))
-    grid = fig.subplots(len(names), columns + 1, squeeze=False, sharey=False, width_ratios=[1.0] * columns + [1.25])
+    curves = [name for name in view.series_names() if view.measured(name) is not None][:4]
+    below = 3.9 if curves else 0.0
+    fig = figure(view.title, 1.1 + 2.35 * len(names) + below)
+    upper, lower = fig.subfigures(2, 1, height_ratios=[1.1 + 2.35 * len(names), below]) if curves else (fig, None)
+    grid = upper.subplots(len(names), columns + 1, squeeze=False, sharey=False, width_ratios=[1.0] * columns + [1.25])
     bad = view.reasons.astype(bool)
     for i, name in enumerate(names):
         values = np.asarray(view.root[name].transpose(*order).values, dtype=float)
@@ -43,6 +47,7 @@ def scatter(view: View, most: int = 3) -> Any:
             if view.warned.any():
                 ax.plot(places[view.warned], scale(values)[view.warned], marker="o", **RING)
             crosses(ax, view, places, bad)
+            late(ax, places, view.ok & ~np.isfinite(values))
             dress(ax, view, axis, name, scale, values, first=j == 0, last=i == len(names) - 1)
         for j in range(columns if i else 0):
             grid[i, j].sharex(grid[0, j])
@@ -50,9 +55,26 @@ def scatter(view: View, most: int = 3) -> Any:
             ax.sharey(grid[i, 0])
             ax.tick_params(labelleft=False)
         bars(grid[i, columns], view, parameters, blocks, values, title=i == 0, last=i == len(names) - 1)
-    failures(fig, view)
-    fig.align_ylabels(grid[:, 0])
+    failures(upper, view, [name for name in names if (view.ok & ~np.isfinite(view.root[name].transpose(*order).values)).any()])
+    upper.align_ylabels(grid[:, 0])
+    if curves:
+        against(lower.subplots(), view, curves, parameters[0])
     return fig
+
+
+def against(ax: Any, view: View, curves: list[str], axis: Axis) -> None:
+    """Some points of the sample over time beside what was measured, the nearest to it among them."""
+    at = dict(view.chosen)
+    series.panel(ax, view, curves, axis if axis.dim == view.design else None, at)
+    ax.set_title(f"Some points of the sample, by {words.symbol(axis.name) or axis.name}; all parameters differ")
+    if told := series.agreement(view, curves, at):
+        series.note(ax, f"{axis.says(at[axis.dim])}, {told}")
+
+
+def late(ax: Any, places: np.ndarray, here: np.ndarray) -> None:
+    """Points that are ok and did not reach a threshold, at the top of the panel."""
+    place = blended_transform_factory(ax.transData, ax.transAxes)
+    ax.plot(places[here], np.full(here.sum(), 0.96), transform=place, **TRIANGLE)
 
 
 def chief(view: View) -> list[str]:
@@ -101,10 +123,12 @@ def look(mark: str, text: str) -> dict[str, Any]:
     return {"ls": "None", "marker": mark, "color": OKABE_ITO[1], "ms": 5.5, "mew": 1.4}
 
 
-def failures(fig: Any, view: View) -> None:
-    """What crosses and rings mean, under the panels."""
+def failures(fig: Any, view: View, unreached: list[str]) -> None:
+    """What crosses, triangles and rings mean, under the panels."""
     rows = list(view.counted_reasons().items())[: len(MARKS)]
     handles = [Line2D([], [], label=f"{text} ({words.counted(count, 'point')})", **look(mark, text)) for mark, (text, count) in zip(MARKS, rows, strict=False)]
+    if unreached:
+        handles.append(Line2D([], [], label=until(view) if all(name.startswith("time_to_") for name in unreached) else "no value", **TRIANGLE))
     if told := view.warnings_told():
         handles.append(Line2D([], [], marker="o", label=told, **RING))
     if handles:

@@ -47,6 +47,7 @@ def scale(values: Any, units: str, temperature: bool = False) -> Scale:
         "s": ((3 * 3600.0, 1 / 3600, "h"), (599.0, 1 / 60, "min"), (0.05, 1.0, "s"), (5e-5, 1e3, "ms"), (0.0, 1e6, "µs")),
         "m": ((0.2, 1.0, "m"), (2e-4, 1e3, "mm"), (0.0, 1e6, "µm")),
         "Pa": ((1e6, 1e-6, "MPa"), (2e3, 1e-3, "kPa"), (0.0, 1.0, "Pa")),
+        "J": ((2e6, 1e-6, "MJ"), (2e3, 1e-3, "kJ"), (0.05, 1.0, "J"), (5e-5, 1e3, "mJ"), (5e-8, 1e6, "µJ"), (0.0, 1.0, "J")),
     }
     if top > 0 and units in steps:
         _, factor, name = next(step for step in steps[units] if top > step[0])

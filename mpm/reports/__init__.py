@@ -1,9 +1,14 @@
 """Report: one HTML page of a sweep or a run that needs nothing else: no network, no file beside it.
 
 Every text goes through jinja2's escaping, data through its JSON filter; the page's content security policy allows one style sheet and one script by their
-hashes and pictures by data, nothing else. Without JavaScript all of it can be read; with it a chart of any two columns and a brush over all parameters.
+hashes and pictures by data, nothing else. Where fit.nc, sensitivity.nc, stability.nc or chart.nc lies beside the sweep, its answer comes first. Without
+JavaScript all of it can be read; with it a chart of any two columns and a brush over all parameters.
 
 May use     opened, plots, jinja2                                                       May not  see config, sweep or anything that computes
+
+Further files
+    content     what a page says of a sweep, in words and tables
+    studies     the same of a fit, a sensitivity analysis, a stability map and a chart
 """
 
 import base64
@@ -15,6 +20,7 @@ from typing import Any
 
 from mpm.opened import Results
 from mpm.reports.content import content, shown
+from mpm.reports.studies import studies
 
 HERE = Path(__file__).parent
 MOVIE = 1_500_000  # bytes of a movie beside the dataset that is put into the page
@@ -47,7 +53,7 @@ def page(found: Results) -> str:
 
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
     made = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    parts = content(found) | {"figures": figures(found), "movie": movie(found)}
+    parts = content(found) | {"studies": beside(found), "figures": figures(found), "movie": movie(found)}
     policy = f"default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src '{digest(style)}'; script-src '{digest(script)}'"
     return made.get_template("page.html").render(parts | {"shown": shown, "policy": policy, "style": Markup(style), "script": Markup(script)})
 
@@ -60,7 +66,6 @@ def digest(text: str) -> str:
 def figures(found: Results) -> list[dict[str, Any]]:
     """Figures as pictures in the page, each with what it shows in words."""
     from mpm.plots import drawn
-    from mpm.plots.style import styled
 
     view, made = found.view, []
     varied = " and ".join(axis.name for axis in view.axes) or view.design or "nothing"
@@ -70,15 +75,27 @@ def figures(found: Results) -> list[dict[str, Any]]:
     if found.points()[0].shots.times.size:
         kinds.append(("snapshot", "Snapshots of the point that stands for the sweep."))
     for name, alt in kinds:
-        buffer, kind = io.BytesIO(), "png" if view.status.size > RASTER or name == "snapshot" else "svg"
         figure = snapshots(found) if name == "snapshot" else drawn(found.tree, name)
         if figure is None:
             continue
-        with styled():
-            figure.savefig(buffer, format=kind, dpi=110, metadata={"Date": None} if kind == "svg" else None)
-        mime = "image/svg+xml" if kind == "svg" else "image/png"
-        made.append({"name": name, "alt": alt, "source": f"data:{mime};base64,{base64.b64encode(buffer.getvalue()).decode()}"})
+        made.append({"name": name, "alt": alt, "source": picture(figure, raster=view.status.size > RASTER or name == "snapshot")})
     return made
+
+
+def picture(figure: Any, raster: bool) -> str:
+    """A figure as the address of its own data: SVG, or PNG where that is smaller."""
+    from mpm.plots.style import styled
+
+    buffer, kind = io.BytesIO(), "png" if raster else "svg"
+    with styled():
+        figure.savefig(buffer, format=kind, dpi=110, metadata=None if raster else {"Date": None})
+    return f"data:image/{'png' if raster else 'svg+xml'};base64,{base64.b64encode(buffer.getvalue()).decode()}"
+
+
+def beside(found: Results) -> list[dict[str, Any]]:
+    """The studies that lie beside the dataset, with their figures as pictures."""
+    made = list(studies(found.path.parent))
+    return [one | {"source": picture(one["figure"], raster=found.view.status.size > RASTER)} for one in made]
 
 
 def snapshots(found: Results) -> Any:

@@ -8,6 +8,7 @@ Further files
     boundary       from the verdicts of a map to its dataset, and to sentences
     chart          speed against accuracy (`mpm chart`)
     choose         method, cell and step for a tolerance (`mpm plan --tol 1%`)
+    contact_sheet  all pictures of all scenes and studies, to look at one by one
     costs          what `mpm plan` says a point costs, beside what it costs
     coupled        one whole step of 1-D thermoelastic particles as a matrix, and its spectral radius
     figures        the figures of "Speed against accuracy" in the README, by one command

@@ -38,10 +38,10 @@ class _Room(types.ModuleType):
     """A package that is also a function: importing any module of the package puts the package at `mpm.sweep`, over a function of that name."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """See `mpm.sweep.api.sweep`."""
-        from mpm.sweep.api import sweep
+        """See `mpm.sweep.api.sweep`; by the front door's function of that name."""
+        import mpm
 
-        return sweep(*args, **kwargs)
+        return mpm.__getattr__("sweep")(*args, **kwargs)
 
 
 sys.modules[__name__].__class__ = _Room

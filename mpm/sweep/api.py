@@ -1,11 +1,12 @@
 """What the shell and Python share: `execute` (a sweep to its folder), `run_one` (a point to its dataset; `alone` keeps it in a folder), `collect_folder`.
 
-`sweep` and `run` are the Python face: the same, returning an xarray.DataTree.
+`sweep` and `run` are the Python face: the same, returning an xarray.DataTree (mpm.notebook adds what a notebook shows).
 """
 
 import contextlib
 import io
 import signal
+import sys
 import threading
 import time
 import warnings
@@ -225,8 +226,11 @@ def caution(experiment: Any) -> None:
     """A Python warning for what is valid in the config and seldom meant; the shell has lines of its own."""
     from mpm.config.cautions import cautions
 
+    level, frame = 1, sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "mpm":
+        level, frame = level + 1, frame.f_back  # the line that is warned of is the user's
     for text in cautions(experiment):
-        warnings.warn(text, stacklevel=3)
+        warnings.warn(text, stacklevel=level)
 
 
 def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "auto", max_runs: int = 10_000, reporter: Any = None, **more: Any) -> Any:

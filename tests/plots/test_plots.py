@@ -200,3 +200,30 @@ def test_points_with_warnings_are_rings_that_say_their_kinds(tree):
     assert [line.get_xdata().tolist() for line in rings] == [[0.3, 0.4]]
     assert "with warnings (2 points): volume 2, temperature 1" in texts(fig)
     assert not any("warnings" in text for text in texts(overview(tree(axes, {"temperature_mean": np.arange(4.0)}))))
+
+
+@pytest.mark.parametrize(
+    ("values", "log", "shown"), [([0.5, 0.52, 0.85], False, 2), ([1, 2, 3, 4], False, 4), ([1, 1.02, 1000], False, 2), ([1, 10, 100], True, 3)]
+)
+def test_labels_of_ticks_do_not_run_into_each_other(values, log, shown):
+    from mpm.plots.axis import apart
+
+    texts = apart(np.array(values, float), [f"{value}" for value in values], log, 30.0)
+    assert sum(map(bool, texts)) == shown and texts[0] and texts[-1]
+
+
+def test_figures_on_axes_of_ones_own(loaf):
+    from matplotlib.figure import Figure
+
+    mine = Figure()
+    left, right = mine.subplots(1, 2)
+    assert mpm.plots.final(loaf, "time_to_centre_95_degC", over="beta", ax=left) is mine
+    assert mpm.plots.over_time(loaf, ["temperature_centre"], ax=right) is mine
+    assert left.get_xlabel().startswith("Heat-transfer coefficient") and right.get_xlabel() == "Time [s]"
+    assert len([line for line in left.lines if line.get_linestyle() == "-"]) == 3
+    by_hand = Figure().add_axes((0.2, 0.2, 0.7, 0.7))
+    assert mpm.plots.final(loaf, ax=by_hand) is by_hand.figure
+    assert [ax.get_ylabel() for ax in mpm.plots.over_time(loaf).axes] == ["Temperature [°C]"]
+    for call, said in ((mpm.plots.final, "there is no final 'no'"), (mpm.plots.over_time, "there is no series 'no'")):
+        with pytest.raises(UnknownFigure, match=said):
+            call(loaf, "no")

@@ -68,3 +68,19 @@ def test_groups_are_resampled_together():
     _, low, high = spearman(one, two, np.arange(20))
     _, low_ten, high_ten = spearman(np.repeat(one, 10), np.repeat(two, 10), np.repeat(np.arange(20), 10))
     assert high_ten - low_ten == pytest.approx(high - low, rel=0.1)
+
+
+def test_points_that_did_not_reach_are_triangles_and_measured_curves_have_a_panel(tree):
+    kappa = np.linspace(1, 4, 16)
+    reached = np.where(kappa > 2, 100 / kappa, np.nan)
+    warm = 300 + kappa[:, None] * np.linspace(0, 10, 11)
+    measured = {"measured_temperature_centre": ("measured_time_centre", np.array([305.0, 315, 320]))}
+    config = {"output": {"probes": {"centre": [0]}, "observables": ["time_to.centre.95_degC"]}}
+    finals = {"time_to_centre_95_degC": reached, "misfit_centre": np.abs(kappa - 3)}
+    figure = overview(tree({"kappa": kappa, "beta": kappa[::-1] * 3}, finals, {"temperature_centre": warm}, sample=True, config=config, measured=measured))
+    upper, lower = figure.subfigs
+    triangles = [line for line in upper.axes[0].lines if line.get_marker() == "^"]
+    assert [len(line.get_xdata()) for line in triangles] == [np.isnan(reached).sum()]
+    assert "not reached within 100 s" in [text.get_text() for text in upper.legends[0].get_texts()]
+    dots = [line for line in lower.axes[0].lines if line.get_linestyle() == "None" and len(line.get_xdata()) == 3]
+    assert len(dots) == 1 and dots[0].get_ydata() == pytest.approx([31.85, 41.85, 46.85])
