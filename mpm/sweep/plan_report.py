@@ -109,7 +109,8 @@ def said(found: dict[str, Any]) -> str:
     for dim in found["dimensions"]:
         for row in dim["coordinates"]:
             reach = ends(row.get("least", row["first"]), row.get("most", row["last"]))
-            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {reach} {row['units']}".rstrip())
+            units = "" if row["units"] == "1" else row["units"]
+            told.append(f"  {dim['name']:<10} {dim['size']:>5} x {row['config_path']}: {reach} {units}".rstrip())
     cost = found["estimate"]
     if refused := cost.get("refused"):
         return "\n".join([*told, refused, *said_groups(found["groups"])])
@@ -147,8 +148,10 @@ def said_groups(groups: list[dict[str, Any]]) -> list[str]:
 
 
 def ends(first: Any, last: Any) -> str:
-    """The ends of an axis, in as many digits as tell them apart."""
-    places = digits([value for value in (first, last) if isinstance(value, float)])
+    """The ends of an axis, in as many digits as tell them apart; one value alone where both are the same."""
+    if first == last:
+        return str(first)
+    places = digits([value for value in (first, last) if isinstance(value, float)], least=4)
     return " to ".join(rounded(value, places) if isinstance(value, float) else str(value) for value in (first, last))
 
 

@@ -8,16 +8,16 @@ from mpm.sweep.store import Refused
 
 @pytest.mark.parametrize("x, y, rtol, atol, said", [
     ([1.0, np.nan], [1.0, np.nan], 0, 0, ""),
-    ([1.0, 2.0], [1.0, 2.0 + 1e-12], 0, 0, "1 of 2 differ, most at (1,): 2.0 and 2.000000000001"),
+    ([1.0, 2.0], [1.0, 2.0 + 1e-12], 0, 0, "1 of 2 differ, most at x=1: 2.0 and 2.000000000001"),
     ([1.0, 2.0], [1.0, 2.0 + 1e-12], 1e-9, 0, ""),
-    ([0.0], [1e-9], 1e-3, 0, "1 of 1 differ, most at (0,): 0.0 and 1e-09"),
+    ([0.0], [1e-9], 1e-3, 0, "1 of 1 differ, most at x=0: 0.0 and 1e-09"),
     ([0.0], [1e-9], 0, 1e-8, ""),
-    ([1.0], [np.nan], 1, 1, "1 of 1 differ, most at (0,): 1.0 and nan"),
-    (["a", "b"], ["a", "c"], 0, 0, "1 of 2 differ, first b and c"),
+    ([1.0], [np.nan], 1, 1, "1 of 1 differ, most at x=0: 1.0 and nan"),
+    (["a", "b"], ["a", "c"], 0, 0, "1 of 2 differ, first at x=1: b and c"),
     ([np.inf], [np.inf], 0, 0, ""),
 ])  # fmt: skip
 def test_values(x, y, rtol, atol, said):
-    assert values(np.array(x), np.array(y), rtol, atol) == said
+    assert values(np.array(x), np.array(y), rtol, atol, lambda at: f"x={at[0]}") == said
 
 
 def test_what_counts_and_what_does_not(tmp_path):
@@ -44,6 +44,19 @@ def test_other_sizes_are_told_once_and_configs_by_path(tmp_path):
     assert compare(one, write("two.nc", 3, 1.0, "end: 1  # s")) == []
     said = ["/: kappa has 3 and 2 values", "/: 3 variables along kappa were not compared", "config: time.end: 1.0 -> 2.0"]
     assert compare(one, write("two.nc", 2, 2.0, "end: 2")) == said
+
+
+def test_a_point_is_named_by_its_values_and_never_by_a_hash(tmp_path):
+    def write(name, last, digest):
+        data = {"temperature_mean": (("kappa", "beta"), [[1.0, 2.0], [3.0, last]]), "run_id": (("kappa", "beta"), [["a", "b"], ["c", digest]])}
+        xr.Dataset(data, {"kappa": [0.2, 0.35], "beta": [5.0, np.inf]}).to_netcdf(tmp_path / name, engine="h5netcdf")
+        return tmp_path / name
+
+    said = [
+        "/temperature_mean: 1 of 4 differ, most at kappa=0.35 beta=inf: 4.0 and 5.0",
+        "/run_id: 1 of 4 points are of another config or version of the physics",
+    ]
+    assert compare(write("one.nc", 4.0, "0f3a"), write("two.nc", 5.0, "77aa")) == said
 
 
 def test_nothing_to_compare(tmp_path):
