@@ -96,8 +96,8 @@ def group(path: str, a: Any, b: Any, rtol: float, atol: float) -> list[str]:
             skipped += 1
         elif x.dims != y.dims or x.shape != y.shape:
             told.append(f"{place}: {dict(x.sizes)} and {dict(y.sizes)}")
-        elif name == "run_id" and (other := int(np.sum(np.asarray(x.values != y.values)))):
-            told.append(f"{place}: {other} of {x.size} points are of another config or version of the physics")
+        elif name == "run_id" and (foreign := int(np.sum(np.asarray(x.values != y.values)))):
+            told.append(f"{place}: {foreign} of {x.size} points are of another config or version of the physics")
         elif text := values(x.values, y.values, rtol, atol, lambda at, dims=x.dims: named(a, dims, at)):
             told.append(f"{place}: {text}")
     return [*told, *([f"{path}: {skipped} variables along {', '.join(map(str, other))} were not compared"] if skipped else [])]
