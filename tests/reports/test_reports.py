@@ -19,10 +19,9 @@ spec.loader.exec_module(browsers)
 HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">'\"&{{7*7}}"
 
 
-def sweep(folder, monkeypatch, title="A slab", kappas=(1.0, 2.0, 3.0), **sections):
-    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+def configured(title="A slab", kappas=(1.0, 2.0, 3.0), **sections):
     body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
-    config = {
+    return {
         "title": title,
         "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
         "bodies": {"s": body},
@@ -31,7 +30,11 @@ def sweep(folder, monkeypatch, title="A slab", kappas=(1.0, 2.0, 3.0), **section
         "output": {"every": 1, "probes": {"centre": [0.01]}, "observables": ["temperature.mean", "time_to.centre.95_degC"]},
         "sweep": {"axes": {"kappa": list(kappas)}},
     } | sections
-    mpm.sweep(mpm.load(config), out=folder, jobs=0)
+
+
+def sweep(folder, monkeypatch, **sections):
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    mpm.sweep(mpm.load(configured(**sections)), out=folder, jobs=0)
     return folder
 
 
@@ -74,7 +77,37 @@ def thousand(folder, monkeypatch):
     return sweep(folder, monkeypatch, sweep={"sample": {"sobol": {**SAMPLE["sobol"], "count": 1000}}})
 
 
-SWEEPS = {"failed": failed, "partly": partly, "sample": sample, "plane": plane, "hostile": hostile, "thousand": thousand}
+def fit(folder, monkeypatch):
+    """Of the fake's straight line: 300 K + kappa t."""
+    samples = [[float(t), 300 + 2.5 * t + 0.1 * (-1) ** t] for t in range(1, 11)]
+    output = {"every": 1, "probes": {"centre": [0.01]}, "measured": {"centre": {"samples": samples}}}
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    one = configured(output=output, sweep=None, fit={"parameters": {"kappa": {"log": [0.1, 9]}}})
+    mpm.fit(mpm.load(one), out=folder, jobs=0)
+    return folder
+
+
+def stability(folder, monkeypatch):
+    """The fake fails at conductivities of 13 and of 17."""
+    from mpm.study.stability import run
+    from mpm.sweep.engine import Options
+
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    about = {"across": {"alpha": [500, 1000]}, "along": {"kappa": [10, 12, 13, 16, 17]}, "panels": {"step": {}}, "toward": "larger", "resolution": 0.05}
+    one = configured(sweep=None, stability=about | {"lines": [{"label": "theory <b>", "formula": "12 + 0*x", "source": "none"}]})
+    run(mpm.load(one), folder, Options(jobs=0), told=lambda text: None)
+    return folder
+
+
+def sensitivity(folder, monkeypatch):
+    pytest.importorskip("SALib", reason="SALib is not installed")
+    mpm.sensitivity(sample(folder, monkeypatch))
+    return folder
+
+
+SWEEPS = {"failed": failed, "partly": partly, "sample": sample, "plane": plane, "hostile": hostile, "thousand": thousand,
+          "fit": fit, "stability": stability, "sensitivity": sensitivity}  # fmt: skip
+STUDIES = ("fit", "stability", "sensitivity")
 
 
 class Tags(html.parser.HTMLParser):
@@ -93,7 +126,7 @@ class Tags(html.parser.HTMLParser):
         self.text.append(data)
 
 
-@pytest.mark.parametrize("name", ["failed", "partly", "plane", "hostile"])
+@pytest.mark.parametrize("name", ["failed", "partly", "plane", "hostile", *STUDIES])
 def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch):
     path = mpm.report(SWEEPS[name](tmp_path / "s", monkeypatch))
     page = path.read_text(encoding="utf-8")
@@ -111,6 +144,13 @@ def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch)
     assert "built-in method" not in page
     if name == "plane":
         assert "1, 2, 3, 4 W/m/K" in shown and "materials.m.heat.fourier.kappa" in shown
+    if name in STUDIES:
+        answer = {"fit": "kappa 2.5", "stability": "boundary at 12.", "sensitivity": "kappa"}[name]
+        assert answer in shown and ("img", "class", name) in tags.attributes and tags.tags.count("table") >= 3
+    if name == "fit":
+        assert "Parameters with 95 % intervals" in shown and "materials.m.heat.fourier.kappa" in shown
+    if name == "stability":
+        assert "theory <b>" in shown and "b" not in tags.tags
     if name == "hostile":
         assert shown.count("document.title='owned'") >= 3  # as text: title, error, warning
     if name == "failed":
@@ -146,7 +186,7 @@ def test_in_a_browser(name, browser, tmp_path, monkeypatch):
         assert browser.value("document.title") != "owned" and contrast(browser) >= 4.5
     if name != "failed":
         ok = browser.value("document.querySelectorAll('#chart .mark').length")
-        assert ok >= {"partly": 2, "sample": 64, "plane": 12, "hostile": 2, "thousand": 1000}[name]
+        assert ok >= {"partly": 2, "sample": 64, "plane": 12, "hostile": 2, "thousand": 1000, "fit": 4, "stability": 8, "sensitivity": 64}[name]
         before = browser.value("document.getElementById('chart').innerHTML")
         browser.value("const s = document.getElementById('up'); s.value = s.options[0].value; s.dispatchEvent(new Event('change'))")
         assert browser.value("document.getElementById('chart').innerHTML") != before
