@@ -109,7 +109,7 @@ def canvas(found: Results, shown: list[Point], of: str | None, inches: list[floa
     title = found.view.title + (f" ({', '.join(common)})" if common != [""] and common else "")
     with styled():
         if inches is None:
-            each = 10.2 / across
+            each = 9.3 / across
             inches = [10.6, min(24.0, max(2.6, each * look.aspect + 0.9) * down + 0.9)]
         fig = Figure(figsize=inches, layout="constrained", dpi=DPI)
         fig.suptitle(wrapped(title, int(9.5 * inches[0])), fontsize=10.5, x=0.01, ha="left")

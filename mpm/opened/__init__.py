@@ -64,9 +64,7 @@ class Results:
     def point(self, at: dict[str, int]) -> Point:
         """The point at a place."""
         view = self.view
-        words = [axis.says(at[axis.dim]) for axis in view.axes]
-        if view.design is not None:
-            words.append(f"{view.design} {at[view.design]}")
+        words = view.named(at)
         plain = [f"{axis.name.rsplit('.', 1)[-1]}={axis.text(at[axis.dim])}" for axis in view.axes]
         stem = re.sub(r"[^A-Za-z0-9_.+=-]+", "_", "-".join(plain) if view.design is None else "-".join([*plain, f"{view.design}={at[view.design]}"]))
         return Point(at, visible(", ".join(words)), stem, Shots(self, at))

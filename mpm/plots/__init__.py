@@ -60,7 +60,7 @@ def final(tree: Any, of: str | None = None, over: str | None = None, ax: Any = N
     Raises UnknownFigure where nothing varies along an axis, for an unknown name, and where no point is ok.
     """
     from mpm.plots import finals, layouts
-    from mpm.plots.style import figure, styled
+    from mpm.plots.style import figure, settle, styled
 
     view = _viewed(tree, of, over)
     if not view.axes or not view.finals:
@@ -69,6 +69,7 @@ def final(tree: Any, of: str | None = None, over: str | None = None, ax: Any = N
         ax = figure(view.title, 5.2).add_subplot() if ax is None else ax
         x, lines, _ = layouts.arrange(view, view.finals[0])
         finals.panel(ax, view, view.finals[0], x, lines, dict(view.chosen))
+        settle([ax])
     return ax.figure
 
 
@@ -80,7 +81,7 @@ def over_time(tree: Any, of: str | Iterable[str] | None = None, ax: Any = None) 
     Raises UnknownFigure for an unknown name, and where there are no series.
     """
     from mpm.plots import layouts, series
-    from mpm.plots.style import figure, styled
+    from mpm.plots.style import figure, settle, styled
 
     view = _viewed(tree)
     there = [] if view.series is None else [str(name) for name, row in view.series.data_vars.items() if "time" in row.dims]
@@ -96,6 +97,7 @@ def over_time(tree: Any, of: str | Iterable[str] | None = None, ax: Any = None) 
     with styled():
         ax = figure(view.title, 4.8).add_subplot() if ax is None else ax
         series.panel(ax, view, names, along, dict(view.chosen))
+        settle([ax])
     return ax.figure
 
 
@@ -151,9 +153,12 @@ def drawn(tree: Any, name: str) -> Any:
 def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) -> Any:
     """A figure by its name."""
     from mpm.plots import layouts, snapshot
+    from mpm.plots.style import settle
 
     kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals, "snapshot": snapshot.snapshot}
-    return kinds[name](_viewed(tree, of, over))
+    fig = kinds[name](_viewed(tree, of, over))
+    settle(fig.axes)
+    return fig
 
 
 def _viewed(tree: Any, of: str | None = None, over: str | None = None) -> Any:

@@ -83,7 +83,7 @@ class Axis:
             ax.minorticks_off()
         elif self.log:
             plain_ticks(ax.xaxis)
-        ax.set_xlabel(self.label)
+        ax.set_xlabel(self.label if len(self.label) < 0.95 * room(ax) else self.title)
 
 
 def room(ax: Any) -> float:

@@ -32,7 +32,7 @@ def slab(view: View, array: np.ndarray, x: Axis, lines: Axis | None, at: dict[st
 
 
 def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], key: bool = True) -> None:
-    """A final over axis `x`; `key` says which colour is which value."""
+    """A final over axis `x`; `key` says which colour is which value, and what marks mean."""
     values, colours = table(view, name, x, lines, at), [OKABE_ITO[0]] if lines is None else lines.colours()
     scale = view.scale(name)
     shown, order = scale(values), np.argsort(x.positions, kind="stable")
@@ -46,7 +46,8 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     reasons_key = marks(ax, view, name, x, lines, at, values, colours)
     if not np.isfinite(values).any():
         ax.text(0.5, 0.5, "no number here", transform=ax.transAxes, ha="center", color=QUIET)
-    legend_below(ax, [*values_key, *([key] for key in [*doubts, *reasons_key])])
+    told = [*doubts, *reasons_key] if key else [one for one in reasons_key if one.get_marker() == "^"]
+    legend_below(ax, [*values_key, *([one] for one in told)])
 
 
 def hollow(ax: Any, view: View, x: Axis, lines: Axis | None, at: dict[str, int], shown: np.ndarray, colours: list[Any]) -> list[Any]:
@@ -79,8 +80,7 @@ def wide(ax: Any, values: np.ndarray, name: str) -> None:
     finite = values[np.isfinite(values)]
     if finite.size and (finite > 0).all() and (name.startswith("error_") or finite.max() / finite.min() > LOG_RATIO):
         ax.set_yscale("log")
-        if finite.min() > 1e-3 and finite.max() < 1e5:
-            plain_ticks(ax.yaxis)
+        plain_ticks(ax.yaxis)
 
 
 def marks(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[str, int], values: np.ndarray, colours: list[Any]) -> list[Any]:

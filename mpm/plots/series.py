@@ -18,7 +18,7 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     """Series `names` (one unit) over time; one colour a value of `lines`, one dash a series. Without `lines`, one colour a series."""
     time = np.asarray(view.series["time"].values, dtype=float)
     clock, scale = words.scale(time, "s"), together(view, names)
-    indices = [None] if lines is None else picked(lines, at)
+    indices = [None] if lines is None else picked(lines, at, [i for i in range(lines.size) if any(known(view, name, {**at, lines.dim: i}) for name in names)])
     colours = OKABE_ITO if lines is None else lines.colours()
     ended = False
     for i in indices:
@@ -32,9 +32,12 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     for name in names:
         levels(ax, view, name)
     ax.set_xlabel(words.with_units("Time", clock.units))
-    ax.set_ylabel(words.with_units(shared_label(view, names), scale.units))
+    place = ax.get_subplotspec()
+    letters = 28 if place is not None and place.get_gridspec().nrows > 1 else 42
+    ax.set_ylabel(words.wrapped(words.with_units(shared_label(view, names), scale.units), letters))
     ax.margins(x=0.01)
-    calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]))
+    most = scale.factor * view.largest(view.series[names[0]].attrs.get("units", "1"))
+    calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]), floor=1e-12 * most)
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
     kinds = entries(view, names, lines) if len(names) > 1 or dots else []
     cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
@@ -48,15 +51,19 @@ def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
     return [Line2D([], [], label=called(view, name), **look) for name, look in zip(names, looks, strict=True)]
 
 
-def picked(lines: Axis, at: dict[str, int]) -> list[int]:
-    """Values of the axis to draw: a few, in order, the chosen point among them."""
-    order = list(np.argsort(lines.ranks()))
-    places = spread(lines.size, MOST_LINES)
-    home = order.index(at[lines.dim])
-    if home not in places:
+def picked(lines: Axis, at: dict[str, int], there: list[int]) -> list[int]:
+    """Values of the axis to draw, of those that are there: a few, in order, the chosen point among them."""
+    order = [int(i) for i in np.argsort(lines.ranks()) if i in there]
+    places = spread(len(order), MOST_LINES)
+    if at[lines.dim] in order and (home := order.index(at[lines.dim])) not in places:
         nearest = min(range(len(places)), key=lambda k: abs(places[k] - home))
         places[nearest] = home
-    return [int(order[place]) for place in places]
+    return [order[place] for place in places]
+
+
+def known(view: View, name: str, at: dict[str, int]) -> bool:
+    """Whether a series has a number at a point."""
+    return bool(np.isfinite(row(view, name, at)).any())
 
 
 def row(view: View, name: str, at: dict[str, int]) -> np.ndarray:
@@ -74,7 +81,9 @@ def called(view: View, name: str) -> str:
     """A series in the legend: the probe's name where it has one."""
     if name in view.probes:
         return name.removeprefix("temperature_").replace("_", " ")
-    return words.short(view.long_name(name).split(",")[0])
+    text = words.short(view.long_name(name))
+    head = text.split(",")[0]
+    return head if " " in head else text  # not `kinetic` for `kinetic, elastic and gravitational energy`
 
 
 def shared_label(view: View, names: list[str]) -> str:
@@ -84,9 +93,12 @@ def shared_label(view: View, names: list[str]) -> str:
     return words.title_case(names[0].split("_")[0])
 
 
-def calm(ax: Any, values: np.ndarray) -> None:
-    """A series that stays as it is, to round-off, is drawn as a level line, not as noise."""
+def calm(ax: Any, values: np.ndarray, floor: float) -> None:
+    """A series that stays as it is, to round-off, is drawn as a level line, not as noise; below `floor` as nothing."""
     finite = values[np.isfinite(values)]
+    low, high = ax.get_ylim()
+    if max(abs(low), abs(high)) < floor:
+        ax.set_ylim(-1e6 * floor, 1e6 * floor)  # beside what others of its unit are
     if finite.size and np.ptp(finite) <= 1e-9 * np.abs(finite).max():
         middle = float(finite.mean())
         low, high = ax.get_ylim()

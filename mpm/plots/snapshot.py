@@ -45,10 +45,7 @@ def stamps(view: View, group: Any) -> tuple[list[int], list[str]]:
 
 def where(view: View) -> str:
     """The point that is shown."""
-    axes = [axis.says(view.chosen[axis.dim]) for axis in view.axes]
-    if view.design is not None:
-        axes.append(f"{view.design} {view.chosen[view.design]}")
-    return ", ".join(axes)
+    return ", ".join(view.named(view.chosen))
 
 
 def bar(fig: Any, axes: Any, image: Any, group: Any, name: str, scale: words.Scale) -> None:

@@ -8,7 +8,7 @@ import math
 import os
 import secrets
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from mpm.plots.words import number
@@ -30,6 +30,7 @@ OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)), (0, (3, 1, 1, 1, 1, 1)))
 SMALL, HEADING = 9, "heading"
 LONGEST = 110  # letters of a title that fit
+SMALLEST, LARGEST = 1e-3, 1e5  # of an axis in plain numbers
 MARKS = ("x", "+", "1", "2", "3", "4")
 STYLE = {
     "font.size": 10,
@@ -146,6 +147,16 @@ def plain_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def settle(axes: Iterable[Any]) -> None:
+    """Ticks in our own numbers wherever matplotlib would write mathematics or put a factor at the end of the axis."""
+    for axis in (axis for ax in axes for axis in (ax.xaxis, ax.yaxis)):
+        formatter, span = axis.get_major_formatter(), np.abs(axis.get_view_interval()).max()
+        if isinstance(formatter, LogFormatter):
+            plain_ticks(axis)
+        elif isinstance(formatter, ScalarFormatter) and not SMALLEST <= span < LARGEST:
+            axis.set_major_formatter(FuncFormatter(lambda value, _: number(value, 4)))
+
+
 def heading(text: str) -> Any:
     """A legend entry that is words alone: the title of its row."""
     return Line2D([], [], ls="None", label=text, gid=HEADING)
@@ -158,6 +169,7 @@ def save(fig: Figure, path: Path | str) -> Path:
     try:
         with styled(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Glyph .* missing from")
+            settle(fig.axes)
             for text in fig.findobj(Text):  # users' words are in titles, legends and labels: an SVG with control characters is none
                 text.set_text(visible(text.get_text(), keep="\n"))
             fig.savefig(temporary, metadata={"Date": None} if path.suffix.lower() == ".svg" else None)

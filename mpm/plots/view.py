@@ -58,6 +58,12 @@ class View:
         rows = [row for row in rows if len(np.unique(row.values)) > 1]
         return [Axis.of(row, str(self.design), self.drawn_in_logarithm(row)) for row in rows] + [axis for axis in self.axes if not axis.category]
 
+    def named(self, at: dict[str, int]) -> list[str]:
+        """A point by its values: what the axes say, and of a sample what its parameters are; its number where they are words."""
+        words = [axis.says(at[axis.dim]) for axis in self.axes]
+        drawn = [axis.says(at[axis.dim]) for axis in self.parameters if axis.dim == self.design] if self.design is not None else []
+        return [*words, *(drawn or ([f"{self.design} {at[self.design]}"] if self.design is not None else []))]
+
     @cached_property
     def status(self) -> np.ndarray:
         """Status of every point."""
@@ -119,14 +125,28 @@ class View:
         first = [*filter(None, [self.wanted]), *asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
         wanted = [*first, *self.listed, *self.probes, *there]
         found = [name for name in dict.fromkeys(wanted) if name in there]
-        return sorted(found, key=lambda name: name not in first and self.at_rest(name))
+        return sorted(found, key=lambda name: name != self.wanted and name not in asked and (self.round_off(name) or self.constant(name)))
 
-    def at_rest(self, name: str) -> bool:
-        """Whether a final is round-off of what its series was, as the kinetic energy of what has come to rest."""
-        if self.series is None or name not in self.series or not name.startswith(("energy", "momentum", "velocity")):
-            return False
-        most = np.nanmax(np.abs(self.series[name].values), initial=0.0)
-        return bool(np.nanmax(np.abs(self.root[name].values), initial=0.0) < 1e-9 * most)
+    def constant(self, name: str) -> bool:
+        """Whether several points have the same number."""
+        values = self.root[name].values[np.isfinite(self.root[name].values)]
+        return bool(len(values) > 1 and np.ptp(values) == 0)
+
+    def round_off(self, name: str) -> bool:
+        """Whether a final is round-off: an error of the digits themselves, or the kinetic energy of what has come to rest."""
+        most, values = 0.0, np.nanmax(np.abs(self.root[name].values), initial=0.0)
+        if name.startswith("error_"):
+            return bool(values < 1e-13 * self.largest(self.root[name].attrs.get("units", "1")))
+        if self.series is not None and name in self.series and name.startswith(("energy", "momentum", "velocity")):
+            most = max(np.nanmax(np.abs(self.series[name].values), initial=0.0), 1e-6 * self.largest(self.series[name].attrs.get("units", "1")))
+        return bool(values < 1e-9 * most)
+
+    def largest(self, units: str) -> float:
+        """The largest number of all series of a unit."""
+        if self.series is None:
+            return 0.0
+        rows = [row.values for row in self.series.data_vars.values() if "time" in row.dims and row.attrs.get("units", "1") == units and row.dtype.kind == "f"]
+        return max((float(np.nanmax(np.abs(row), initial=0.0)) for row in rows), default=0.0)
 
     def label(self, name: str, units: str) -> str:
         """The axis label of a variable in the units shown."""

@@ -11,7 +11,8 @@ import numpy as np
 from mpm.text import visible
 
 KELVIN = 273.15
-SYMBOLS = {"kappa": "κ", "beta": "β", "alpha": "α", "eta": "η", "p0": "p₀", "nu": "ν", "mu": "μ", "lam": "λ"}
+SYMBOLS = {"kappa": "κ", "beta": "β", "alpha": "α", "eta": "η", "p0": "p₀", "nu": "ν", "mu": "μ", "lam": "λ", "gamma": "γ"}
+ENERGIES = ("J", "J/m", "J/m2")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _TEMPERATURES = ("temperature", "outside", "reference", "at")  # last words of config paths that name a temperature, not a difference
 
@@ -47,11 +48,13 @@ def scale(values: Any, units: str, temperature: bool = False) -> Scale:
         "s": ((3 * 3600.0, 1 / 3600, "h"), (599.0, 1 / 60, "min"), (0.05, 1.0, "s"), (5e-5, 1e3, "ms"), (0.0, 1e6, "µs")),
         "m": ((0.2, 1.0, "m"), (2e-4, 1e3, "mm"), (0.0, 1e6, "µm")),
         "Pa": ((1e6, 1e-6, "MPa"), (2e3, 1e-3, "kPa"), (0.0, 1.0, "Pa")),
-        "J": ((2e6, 1e-6, "MJ"), (2e3, 1e-3, "kJ"), (0.05, 1.0, "J"), (5e-5, 1e3, "mJ"), (5e-8, 1e6, "µJ"), (0.0, 1.0, "J")),
     }
     if top > 0 and units in steps:
         _, factor, name = next(step for step in steps[units] if top > step[0])
         return Scale(factor, 0.0, name)
+    if units in ENERGIES and 5e-8 < top < 2e9:
+        _, factor, prefix = next(step for step in ((2e6, 1e-6, "M"), (2e3, 1e-3, "k"), (0.05, 1.0, ""), (5e-5, 1e3, "m"), (0.0, 1e6, "µ")) if top > step[0])
+        return Scale(factor, 0.0, prefix + units_text(units))
     return Scale(units=units_text(units))
 
 
@@ -149,6 +152,6 @@ def counted(count: int, one: str) -> str:
 def compose(name: str, long_name: str, units: str, mark: Callable[[str], str] = symbol) -> str:
     """An axis label of a parameter: `Heat conductivity κ [W/m/K]`."""
     letter, text = mark(name), short(long_name) or name.replace("_", " ")
-    if letter and not text.endswith(f" {letter}"):
+    if letter and text != letter and not text.endswith(f" {letter}"):
         text = f"{text} {letter}"
     return with_units(title_case(text), units)

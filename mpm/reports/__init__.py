@@ -84,10 +84,11 @@ def figures(found: Results) -> list[dict[str, Any]]:
 
 def picture(figure: Any, raster: bool) -> str:
     """A figure as the address of its own data: SVG, or PNG where that is smaller."""
-    from mpm.plots.style import styled
+    from mpm.plots.style import settle, styled
 
     buffer, kind = io.BytesIO(), "png" if raster else "svg"
     with styled():
+        settle(figure.axes)
         figure.savefig(buffer, format=kind, dpi=110, metadata=None if raster else {"Date": None})
     return f"data:image/{'png' if raster else 'svg+xml'};base64,{base64.b64encode(buffer.getvalue()).decode()}"
 

@@ -227,3 +227,29 @@ def test_figures_on_axes_of_ones_own(loaf):
     for call, said in ((mpm.plots.final, "there is no final 'no'"), (mpm.plots.over_time, "there is no series 'no'")):
         with pytest.raises(UnknownFigure, match=said):
             call(loaf, "no")
+
+
+def test_round_off_and_what_never_changes_is_no_trend(tree):
+    kappa, time = np.array([1.0, 2.0, 3.0]), np.linspace(0, 10, 6)
+    finals = {"error_l2": np.array([0, 6e-14, 3e-14]), "mass_total": np.ones(3), "energy_kinetic": np.full(3, 1e-21), "temperature_mean": 300 + kappa}
+    series = {"temperature_mean": 300 + kappa[:, None] * time, "energy_kinetic": np.full((3, 6), 1e-21), "energy_elastic": np.full((3, 6), 2.0)}
+    made = tree({"kappa": kappa}, finals, series, time=time)
+    assert overview(made).axes[0].get_ylabel() == "Mean temperature [°C]"
+    low, high = mpm.plots.over_time(made, "energy_kinetic").axes[0].get_ylim()
+    assert high - low > 1e9 * 1e-21
+
+
+def test_no_axis_writes_mathematics_or_a_factor_at_its_end(tree, tmp_path):
+    kappa = np.array([1.0, 2.0, 3.0, 4.0])
+    wide = tree({"kappa": kappa}, {"error_l2": np.array([1e-9, 1e-7, 1e-5, 1e-4]), "energy_kinetic": kappa * 1e13, "temperature_mean": 99.99 + 1e-5 * kappa})
+    for name in ("overview", "finals"):
+        figure = _draw(wide, name)
+        figure.savefig(tmp_path / "a.png")
+        for ax in panels(figure):
+            labels = [label.get_text() for axis in (ax.xaxis, ax.yaxis) for label in axis.get_ticklabels()]
+            assert not any("$" in text or "e+" in text or "e-" in text for text in labels)
+            assert ax.yaxis.get_offset_text().get_text() == ax.xaxis.get_offset_text().get_text() == ""
+    mine = mpm.plots.final(wide, "temperature_mean")
+    mine.savefig(tmp_path / "b.png")
+    texts = [label.get_text() for label in mine.axes[0].get_yticklabels()]
+    assert len(set(texts)) == len(texts)
