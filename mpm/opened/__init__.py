@@ -119,6 +119,7 @@ class Shots:
         groups, self.at = results.view.groups, at
         self.grid, self.particles = (self.kept(groups.get(name), at) for name in ("grid", "particles"))
         self.entries: Any = None
+        self.near: dict[str, tuple[int, np.ndarray]] = {}  # of each field the rows that were read last, from the first on
         self.rows = None if self.particles is None else [np.asarray(self.particles[name].values) for name in ("row_start", "row_size")]
         outside = next((group for group in map(groups.get, ("particles", "grid")) if group is not None and "file" in group), None)
         if outside is not None and (file := str(outside["file"].isel({dim: at[dim] for dim in outside["file"].dims}).values)):
@@ -160,8 +161,18 @@ class Shots:
         if self.particles is not None:
             begin, size = (int(values[number]) for values in self.rows)
             rows = [(str(name), row) for name, row in self.particles.data_vars.items() if "obs" in row.dims]
-            particles = {name: row.isel(obs=slice(begin, begin + size)).values for name, row in rows}
+            particles = {name: self.read(name, row, begin, begin + size) for name, row in rows}
         return Frame(float(self.times[k]), grid, particles)
+
+    def read(self, name: str, row: Any, begin: int, end: int) -> np.ndarray:
+        """Rows of a field of particles. Whole chunks of the file are read and the last kept: the next snapshot often lies in the same."""
+        first, values = self.near.get(name, (0, np.zeros(0)))
+        if not first <= begin <= end <= first + len(values):
+            chunk = (row.encoding.get("chunksizes") or (1,))[0]
+            first, last = begin // chunk * chunk, min(-(-end // chunk) * chunk, row.sizes["obs"])
+            values = row.isel(obs=slice(first, last)).values
+            self.near[name] = first, values
+        return values[begin - first : end - first]
 
 
 def elsewhere(path: Path) -> Any:

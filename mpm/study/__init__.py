@@ -24,6 +24,7 @@ Further files
     reduction      no more model than a scene needs, measured
     return_map     return maps
     richardson     A reference where there is no exact solution
+    showing        what showing results costs: movie, report, export, help, memory of a sweep's parent
     single         the verification problems in single precision
     speed          the table of speed
     speed_models   our side of the rows of mpm.study.speed that are not the thrown cube

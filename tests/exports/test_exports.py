@@ -172,3 +172,15 @@ def test_parquet_and_zarr_read_what_the_dataset_holds(tmp_path, monkeypatch):
         for name in ("/", "series", "grid"):
             for variable, values in tree[name].to_dataset().data_vars.items():
                 np.testing.assert_array_equal(back[name][variable].values, values.values)
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 10, 40])
+def test_rows_are_the_same_whatever_chunks_they_lie_in(chunk):
+    from mpm.opened import Shots
+
+    row, shots = xarray.DataArray(np.arange(40.0), dims="obs"), Shots.__new__(Shots)
+    row.encoding["chunksizes"], shots.near = (chunk,), {}
+    sizes = np.array([5, 8, 1, 12, 14])
+    ends = np.cumsum(sizes)
+    for k in (0, 1, 2, 3, 4, 2, 0, 4):
+        assert shots.read("a", row, int(ends[k] - sizes[k]), int(ends[k])).tolist() == list(range(ends[k] - sizes[k], ends[k]))
