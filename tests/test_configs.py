@@ -31,6 +31,13 @@ def test_it_says_what_it_is_for(path):
         assert said and len(said[0]) > len(heading) + 10, heading
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "scenes").glob("*.yaml")), ids=lambda path: path.stem)
+def test_a_scene_says_what_is_fitted_and_what_predicted(path):
+    from mpm.starting.scenes import read
+
+    assert len(read(path).trust) > 40
+
+
 @each
 def test_it_loads_and_plans(path):
     experiment = mpm.load(path)

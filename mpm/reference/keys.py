@@ -109,7 +109,7 @@ def bounds(quantity: Quantity) -> str:
 def default(field: Any) -> str:
     """The default as a config would write it; nothing where the key is needed."""
     if field.is_required():
-        return "none: it is needed"
+        return "required"
     value = plain(field.default, defaults=False)
     if value in (None, [], {}, ""):
         return "absent"
