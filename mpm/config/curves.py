@@ -101,8 +101,11 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
     head, probe = lines[place][0], lines[0][1].startswith(EXPORT)
     time = time or next((name for name in names if seconds_of(name) is not None), "")
     scale = seconds_of(time) if time in names else None
+    others = [name for name in names if name and seconds_of(name) is None and name != sigma]
+    value = value or (others[0] if len(others) == 1 else "")
     if value not in names:
-        raise Unreadable(head, f"no such column: {value!r}", [n for n in names if seconds_of(n) is None] or listed(names), "value")
+        said = f"no such column: {value!r}" if value else "which column is it? Name it by `value`"
+        raise Unreadable(head, said, [n for n in names if seconds_of(n) is None] or listed(names), "value")
     if time not in names or scale is None:
         right = [n for n in names if seconds_of(n) is not None]
         raise Unreadable(head, f"no such column: {time!r}", right or f"a column named {', '.join(SECONDS)}; here are {brief(listed(names))}", "time")

@@ -35,6 +35,15 @@ def test_samples_are_seconds_and_kelvin_and_survive_a_round_trip(tmp_path):
     assert mpm.load(experiment.resolved()).output.measured["middle"].samples == samples
 
 
+def test_the_only_column_beside_the_time_needs_no_name(tmp_path):
+    bare = BASE.replace(", time: minute, value: oven_degC", "")
+    named = mpm.load(written(tmp_path, "1,26.85\n2,36.85\n")).output.measured["middle"].samples
+    assert mpm.load(written(tmp_path, "1,26.85\n2,36.85\n", bare)).output.measured["middle"].samples == named
+    (tmp_path / "curve.csv").write_text("minute,oven_degC,core_degC\n1,26.85,20\n")
+    with pytest.raises(mpm.ConfigError, match="curve.csv:1: which column is it\\? Name it by `value`; allowed: oven_degC, core_degC"):
+        mpm.load(tmp_path / "scene.yaml")
+
+
 def test_misfit_is_the_root_mean_square_difference_at_times_reached(tmp_path):
     # Nothing heats the slab: it stays at 300 K, so the differences are 0 and 10 K; the third row lies beyond the end.
     run = mpm.run_point(mpm.load(written(tmp_path, "1,26.85\n2,36.85\n3,1000\n")))
