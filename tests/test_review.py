@@ -72,6 +72,24 @@ def test_round_off_of_a_scene_that_takes_in_no_heat_is_no_gap(off, told):
     assert bool(list(LOOKS["heat"](scene(0.0, 4.0), run))) is told  # 1 % of 2 kg times 1.5 J/(kg K) times 10 K
 
 
+@pytest.mark.parametrize(
+    ("transfer", "beta", "told"),
+    [("xpic", "inf", True), ("xpic", 0.5, True), ("xpic", {"table": {"time": [0, 1], "value": [0.0, 0.5]}}, True), ("xpic", 0.3, False), ("apic", "inf", False)],
+)
+def test_xpic_behind_a_surface_that_is_all_but_held_is_told(transfer, beta, told):
+    """It is off by 1.6 % of the fall at 64 cells behind beta = inf, and no ledger shows it; kappa / h is 0.4 here."""
+    sides = [{"of": "bar", "side": "right", "convection": {"beta": beta, "outside": 350.0}}]
+    series = {"temperature_min": [300.0], "temperature_max": [350.0], "heat_total": [1.0], "heat_exchanged": [1.0], "heat_ledger": [0.0]}
+    run = SimpleNamespace(series={name: np.array(values) for name, values in series.items()})
+    experiment = scene(0.0, 4.0, surfaces=sides, method={"temperature": transfer})
+    assert ["xpic" in text for text in LOOKS["heat"](experiment, run)] == [True] * told
+    wall = {"left": {"stick": {"heat": {"beta": 0.5, "temperature": 350.0}}}}
+    experiment = scene(0.0, 4.0, walls=(), method={"temperature": transfer}).model_copy(update={"walls": scene(0.0, 4.0).walls})
+    assert not list(LOOKS["heat"](experiment, run))
+    data = experiment.resolved() | {"walls": wall}
+    assert len(list(LOOKS["heat"](mpm.load(data), run))) == (transfer == "xpic")
+
+
 def test_a_probe_whose_particle_is_gone(core):
     """A particle beyond the side that the probe hangs on."""
     experiment = scene(0.0, 4.0)
