@@ -35,6 +35,12 @@ def test_what_needs_more_than_is_allowed_is_refused_with_its_estimate_and_runs_w
     assert go(points, tmp_path, memory=1e9).ran == 0
 
 
+@pytest.mark.parametrize(("current", "free"), [(60.0, 40.0), (None, 100.0)])
+def test_what_a_control_group_allows_is_less_what_it_uses(monkeypatch, current, free):
+    monkeypatch.setattr(resources, "read", lambda path: {"memory.max": 100.0, "memory.current": current}[path.name])
+    assert available() == free
+
+
 def test_points_wait_for_memory_that_others_have(tmp_path):
     there = Resources(tmp_path, None, far=False)
     there.free = there.limit = 10.0
