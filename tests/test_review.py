@@ -72,9 +72,11 @@ def test_round_off_of_a_scene_that_takes_in_no_heat_is_no_gap(off, told):
     assert bool(list(LOOKS["heat"](scene(0.0, 4.0), run))) is told  # 1 % of 2 kg times 1.5 J/(kg K) times 10 K
 
 
+RISING = {"table": {"time": [0, 1], "value": [0.0, 0.5]}}
+
+
 @pytest.mark.parametrize(
-    ("transfer", "beta", "told"),
-    [("xpic", "inf", True), ("xpic", 0.5, True), ("xpic", {"table": {"time": [0, 1], "value": [0.0, 0.5]}}, True), ("xpic", 0.3, False), ("apic", "inf", False)],
+    ("transfer", "beta", "told"), [("xpic", "inf", True), ("xpic", 0.5, True), ("xpic", RISING, True), ("xpic", 0.3, False), ("apic", "inf", False)]
 )
 def test_xpic_behind_a_surface_that_is_all_but_held_is_told(transfer, beta, told):
     """It is off by 1.6 % of the fall at 64 cells behind beta = inf, and no ledger shows it; kappa / h is 0.4 here."""

@@ -40,7 +40,7 @@ def test_the_only_column_beside_the_time_needs_no_name(tmp_path):
     named = mpm.load(written(tmp_path, "1,26.85\n2,36.85\n")).output.measured["middle"].samples
     assert mpm.load(written(tmp_path, "1,26.85\n2,36.85\n", bare)).output.measured["middle"].samples == named
     (tmp_path / "curve.csv").write_text("minute,oven_degC,core_degC\n1,26.85,20\n")
-    with pytest.raises(mpm.ConfigError, match="curve.csv:1: which column is it\\? Name it by `value`; allowed: oven_degC, core_degC"):
+    with pytest.raises(mpm.ConfigError, match=r"curve.csv:1: which column is it\? Name it by `value`; allowed: oven_degC, core_degC"):
         mpm.load(tmp_path / "scene.yaml")
 
 
