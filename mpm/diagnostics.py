@@ -6,6 +6,7 @@ import numpy as np
 
 from mpm.basis import second_moment
 from mpm.boundary import directions, extents
+from mpm.heat.setting import conditions
 from mpm.jit import kernel, role
 from mpm.materials import HenckyWarm, energy, enthalpy, stress, value, warmed
 from mpm.materials.laws import Constant
@@ -49,7 +50,7 @@ def strains(space, B):
 
 @kernel
 def stored(law, e, V0, theta):
-    """Sum V0 psi [J]; theta (N,) absolute temperatures."""
+    """Sum V0 psi [J]; theta what laws are asked with (mpm.heat.setting.conditions)."""
     total = 0.0
     for i in range(V0.shape[0]):
         total += V0[i] * energy(warmed(law, theta[i]), e[i, 0], e[i, 1], e[i, 2])
@@ -59,12 +60,12 @@ def stored(law, e, V0, theta):
 def warm_energy(space, bodies) -> float:
     """Elastic energy of the bodies whose moduli follow temperature [J]: a heat step changes it at the same strain."""
     warm = [body for body in bodies if isinstance(body.elastic, HenckyWarm)]
-    return sum(stored(body.elastic, strains(space, body.particles.B), body.particles.V0, temperatures(body)) for body in warm)
+    return sum(stored(body.elastic, strains(space, body.particles.B), body.particles.V0, conditions(body)) for body in warm)
 
 
 @kernel
 def stresses(law, e, thermal, theta):
-    """Principal Kirchhoff stresses (N, 3) [Pa]; thermal (N,) is gamma (Theta - Theta_0), theta (N,) absolute temperatures."""
+    """Principal Kirchhoff stresses (N, 3) [Pa]; thermal (N,) is gamma (Theta - Theta_0), theta as in `stored`."""
     out = np.empty_like(e)
     for i in range(e.shape[0]):
         out[i, 0], out[i, 1], out[i, 2] = stress(warmed(law, theta[i]), e[i, 0], e[i, 1], e[i, 2], thermal[i])
@@ -100,7 +101,7 @@ def pressure_of(expansion, body) -> np.ndarray:
         held = np.maximum(expansion.most, np.minimum(body.thermal.theta, expansion.set)).astype(float)
         return expansion.gamma * (held + expansion.shift)
     if isinstance(expansion, Softening):
-        return np.array([value(expansion.E, t) for t in temperatures(body)]) * pressure_of(expansion.inner, body)
+        return np.array([value(expansion.E, t) for t in conditions(body)]) * pressure_of(expansion.inner, body)
     return np.zeros(len(body.particles.m))
 
 

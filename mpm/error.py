@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mpm.diagnostics import stresses, temperatures, thermal_pressure
+from mpm.heat.setting import conditions
 
 PLACES = {3: ((0, 0), (1, 1), (2, 2)), 4: ((0, 0), (1, 1), (2, 2), (0, 1)), 6: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
 
@@ -47,7 +48,7 @@ def kirchhoff(body) -> np.ndarray:
         full[:, i, j] += B[:, k]
         full[:, j, i] = full[:, i, j]
     values, axes = np.linalg.eigh(full)
-    tau = stresses(body.elastic, 0.5 * np.log(values), thermal_pressure(body), temperatures(body))
+    tau = stresses(body.elastic, 0.5 * np.log(values), thermal_pressure(body), conditions(body))
     tensor = np.einsum("nik,nk,njk->nij", axes, tau, axes)
     return np.stack([tensor[:, i, j] for i, j in places], axis=1)
 

@@ -13,7 +13,8 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, nodal, strains, stresses, temperatures, thermal_pressure
 from mpm.error import PLACES, kirchhoff
-from mpm.state import PAD, Axisymmetric
+from mpm.heat.setting import conditions
+from mpm.state import PAD, Axisymmetric, Setting
 
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
@@ -24,6 +25,7 @@ def particle_fields(scene, origins) -> dict[str, np.ndarray]:
         "position": lambda body, X: body.particles.x,
         "velocity": lambda body, X: body.particles.v,
         "temperature": lambda body, X: temperatures(body),
+        "setting": lambda body, X: body.setting.X if isinstance(body.setting, Setting) else np.zeros(len(X)),
         "J": lambda body, X: body.particles.J,
         "mass": lambda body, X: body.particles.m,
         "pressure": lambda body, X: -principal_cauchy(scene, body).mean(axis=1),
@@ -63,7 +65,7 @@ def hencky(body) -> np.ndarray:
 
 
 def principal_cauchy(scene, body) -> np.ndarray:
-    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body), temperatures(body))
+    tau = stresses(body.elastic, strains(scene.space, body.particles.B), thermal_pressure(body), conditions(body))
     return tau / body.particles.J[:, None]
 
 

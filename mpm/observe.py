@@ -21,16 +21,16 @@ from mpm.diagnostics import (
     stored,
     strains,
     stresses,
-    temperatures,
     thermal_pressure,
 )
 from mpm.error import Errors
 from mpm.fields import axis_names, cauchy, grid_fields, particle_fields
 from mpm.follow import moved, nearest, renumbered, sampled
+from mpm.heat.setting import conditions
 from mpm.memory import Frames, rows
 from mpm.outcome import Outcome
 from mpm.records.variables import parts
-from mpm.state import PAD, Axisymmetric, Run, Thermal
+from mpm.state import PAD, Axisymmetric, Run, Setting, Thermal
 from mpm.total import reference as moving
 from mpm.total.heat import Warmth
 
@@ -186,9 +186,9 @@ class Recorder:
         elastic, pressure, strain = 0.0, 0.0, 0.0
         for body in scene.bodies:
             e = strains(scene.space, body.particles.B)
-            elastic += stored(body.elastic, e, body.particles.V0, temperatures(body))
+            elastic += stored(body.elastic, e, body.particles.V0, conditions(body))
             strain = max(strain, float(np.max(np.abs(e))))
-            tau = stresses(body.elastic, e, thermal_pressure(body), temperatures(body))
+            tau = stresses(body.elastic, e, thermal_pressure(body), conditions(body))
             pressure -= float(np.sum(body.particles.V0 * np.sum(tau, axis=1))) / 3
         yield "pressure_mean", pressure / np.sum(V)
         yield "strain_max", strain
@@ -213,6 +213,7 @@ class Recorder:
         yield "temperature_min", np.min(theta)
         yield "temperature_max", np.max(theta)
         yield "heat_total", total
+        yield from self.setting()
         yield "area_exchanging", self.exchanging()
         yield "heat_exchanged", clock.exchanged
         yield "heat_ledger", total - clock.exchanged - clock.local
@@ -224,6 +225,13 @@ class Recorder:
             error = theta - scene.watch.exact(np.concatenate(self.origin), clock.time)
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
             yield "error_max", np.max(np.abs(error))
+
+    def setting(self):
+        """Degrees of setting."""
+        if found := [(body.setting.X, body.particles.m) for body in self.warm if isinstance(body.setting, Setting)]:
+            X, m = (np.concatenate(part) for part in zip(*found, strict=True))
+            yield "setting_mean", np.sum(m * X) / np.sum(m)
+            yield "setting_min", np.min(X)
 
     def at_probes(self, scene):
         """Displacements and stresses that observables ask probes for."""

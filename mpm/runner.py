@@ -233,8 +233,9 @@ def compile_step(experiment) -> None:
 
 def compile_heat(experiment) -> None:
     """Compile the heat step, by one of the pace that a run begins with."""
-    from mpm.simulation import warm_bodies, work_arrays
+    from mpm.simulation import work_arrays
     from mpm.total.drive import present_limits
+    from mpm.warming import warm_bodies
 
     scene, clock = at_start(experiment)
     now = present_limits(scene, clock)

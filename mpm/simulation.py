@@ -13,28 +13,19 @@ import numpy as np
 
 from mpm.contact.block import advance_block, work_arrays
 from mpm.contact.insync import in_sync
-from mpm.diagnostics import warm_energy
 from mpm.guards import Guards, explain
 from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
-from mpm.integrate.bounds import bounds_of, keep_between, needs_slopes
-from mpm.integrate.fracture_surface import tear_open
-from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
-from mpm.integrate.heat_implicit import heat_implicit
-from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
-from mpm.integrate.heat_step import heat_step
 from mpm.integrate.sorting import Order
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
 from mpm.integrate.surroundings import jumps
-from mpm.integrate.timestep import SUBSTEPS, Limits
-from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder, merged, stops
-from mpm.outcome import BUDGET, COMPLETED, HEAT_SOLVER, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
-from mpm.state import Run, Thermal
-from mpm.total.drive import advance_references, present_limits, show_all, warm_references
+from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
+from mpm.state import Run
+from mpm.total.drive import advance_references, present_limits, show_all
+from mpm.warming import warm_bodies
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
-MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
 GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED}  # sums over steps; worked by loads, swelled by thermal stress
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
@@ -203,63 +194,6 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
         clock.part += 1
     clock.parts = 0
     return guards.whole(scene, clock)
-
-
-def warm_bodies(scene: Scene, clock: Clock, buffers, begun: float, dt: float, now: Limits) -> Outcome:
-    """One heat step from `begun` on of every body that has heat: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
-    around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
-    if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
-        return warm_references(scene, clock, dt) if now.heat or around else outcome(COMPLETED)
-    tear_open(scene)
-    for body, one in around:
-        one.write(scene.space, body, begun, dt)
-    if not all(one.steady for _, one in around):
-        now = present_limits(scene, clock)
-    kind, stable = scene.heat.kind, now.substep() * scene.safety
-    ratio = dt / stable * (1 - 1e-9)
-    substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
-    implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
-    clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
-    held, met = warm_energy(scene.space, scene.bodies), scene.meeting
-    kinds = [scene.walls] * len(scene.bodies) if met is None else met.walls
-    trio = zip(scene.bodies, scene.surroundings, kinds, strict=True)
-    mirrors = np.stack([walls if one is None else one.mirrors(scene.space, body, walls) for body, one, walls in trio])
-    before = [(lost_to_grid(scene, body, buffers[3], walls), bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None)
-              for body, walls, seen in zip(scene.bodies, mirrors, clock.seen, strict=True)]  # fmt: skip
-    joined = ()
-    if met is not None and (links := met.heat_links(mirrors, dt)) is not None:
-        joined, (gained, _, count) = met.conduct(scene, mirrors, links, dt)
-        if count < 0:
-            return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
-        clock.exchanged, clock.iterations, implicit = clock.exchanged + gained, clock.iterations + count, True
-    for b, (body, walls, (lost, between)) in enumerate(zip(scene.bodies, mirrors, before, strict=True)):
-        back = scene.blend, 1.0 if between is not None and needs_slopes(scene, body) else scene.affine  # of the transfer to particles
-        if b in joined:
-            gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
-        elif implicit:
-            gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, *back)
-            if count < 0:
-                return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
-            clock.iterations += count
-        elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, body, buffers[3], walls, dt, substeps, *back)
-        else:
-            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], walls, dt, substeps, *back)
-        clock.exchanged += gained
-        if lost is not None:
-            correct(body.thermal, *lost)
-        if between is not None:
-            moved, left = keep_between(scene.space, body, buffers[3], walls, *between)
-            clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
-    if met is not None:
-        met.warmed()
-    clock.heat_steps, clock.softened = clock.heat_steps + 1, clock.softened + warm_energy(scene.space, scene.bodies) - held
-    if implicit:
-        clock.implicit += 1
-    elif substeps > (1 if kind == "explicit" else 2):
-        binding = min(now.heat, key=now.heat.get)
-        clock.bound[f"{binding} (heat sub-steps)"] = clock.bound.get(f"{binding} (heat sub-steps)", 0) + substeps
-    return outcome(COMPLETED)
 
 
 def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:

@@ -151,6 +151,18 @@ class Softening(NamedTuple):
     E: Any  # law of temperature [Pa]
 
 
+class NoSetting(NamedTuple):
+    """Nothing sets: laws follow temperature alone."""
+
+
+class Setting(NamedTuple):
+    """Degrees of setting (docs/physics.md 18), in double precision: an explicit step adds less than single precision sees."""
+
+    X: np.ndarray  # (N,) from 0 to 1 [-]
+    k: np.ndarray  # (N,) rate at the temperature of the last step [1/s]
+    rate: Any  # law of temperature [1/s]
+
+
 class NoHeating(NamedTuple):
     """Deformation does not heat."""
 
@@ -220,6 +232,7 @@ class Body(NamedTuple):
     heating: Any
     source: Any = NoSource()
     locking: Any = NoAverage()  # or Average
+    setting: Any = NoSetting()  # or Setting
 
 
 PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/sorting.py)
@@ -227,6 +240,7 @@ PER_PARTICLE = {  # arrays with a row a particle: they move together when partic
     Thermal: ("theta", "c"),
     Surface: ("row",),
     Latched: ("most",),
+    Setting: ("X", "k"),
     Source: ("X", "t"),
     Load: ("force", "dipole", "F", "loaded", "t"),
 }

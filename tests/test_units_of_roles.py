@@ -153,12 +153,12 @@ units(temperature, (thermal(), 1), "K", free=[(0, 0, 0), (0, 4)])
 units(temperature, (Isothermal(theta), 1), "K")
 expansion = Expansion(20 * Pa / K, -10 * K)
 unread = [(1, 0, 0), (1, 2), (1, 4)]
-units(thermal_stress, (expansion, thermal(), 1), "Pa", free=unread)
+units(thermal_stress, (expansion, thermal(), 1, theta), "Pa", free=[*unread, (3,)])
 latched = Latched(20 * Pa / K, -10 * K, [10 * K, 25 * K], 35 * K)
-units(thermal_stress, (latched, thermal(), 1), "Pa", free=[*unread, (0, 2, 0)])
+units(thermal_stress, (latched, thermal(), 1, theta), "Pa", free=[*unread, (0, 2, 0), (3,)])
 units(lambda law, thermal, i: (latch(law, thermal, i), law.most[i])[1], (latched, thermal(), 1), "K", free=[*unread, (0, 2, 0), (0, 0), (0, 1)])
-units(thermal_stress, (Softening(Expansion(1e-3 / K, -10 * K), stiff.E), thermal(), 1), "Pa", free=[(1, 0, 0), (1, 4)])
-assert thermal_stress(NoExpansion(), thermal(), 1) == 0.0
+units(thermal_stress, (Softening(Expansion(1e-3 / K, -10 * K), stiff.E), thermal(), 1, theta), "Pa", free=[(1, 0, 0), (1, 4), (1, 2)])
+assert thermal_stress(NoExpansion(), thermal(), 1, theta) == 0.0
 
 R0, lost = 300 * u.kg / u.m**3, 40 * J / u.m**3
 hot = Heating(20 * Pa / K, Q(0.9))

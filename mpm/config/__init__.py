@@ -28,6 +28,7 @@ Further files
     rules_output      rules for the output
     rules_point       rules for grid.dimension 0, the material point
     rules_scene       rules for bodies, materials, surfaces, walls and grid
+    rules_setting     rules of what sets
     rules_size        rules for sizes that no machine takes
     rules_tools       rules for tools, and for observables of what bodies meet
     rules_stability   rules of `stability:`

@@ -86,6 +86,8 @@ class Menu:
         choices = []
         for name, kind in self.kinds.items():
             inner = kind.exemplified(handler(kind.__pydantic_core_schema__), handler)
+            if "$ref" in inner:  # a kind within a kind: named once, described wherever it stands
+                inner = {**inner, "description": handler.resolve_ref_schema(inner).get("description", self.what)}
             choices.append({"type": "object", "properties": {name: inner}, "required": [name], "additionalProperties": False})
         bare = [name for name, kind in self.kinds.items() if kind.bare()]
         return {"oneOf": [*choices, *([{"enum": bare}] if bare else [])], "description": self.what}

@@ -13,6 +13,7 @@ from mpm.config import rules_mechanics as steps
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
+from mpm.config import rules_setting as setting
 from mpm.config import rules_size as size
 from mpm.config import rules_tools as tools
 from mpm.config.explain import Finding
@@ -75,6 +76,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.body_shape, each("bodies")),
     (scene.body_motion, each("bodies")),
     (scene.material, each("materials")),
+    (setting.setting, each("materials")),
     (scene.anything, once),
     (scene.surface, each("surfaces")),
     (scene.surface_conducts, each("surfaces")),
@@ -94,6 +96,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (output.probe, output.probes),
     (output.probe_home, output.probes),
     (output.observable, output.observables),
+    (setting.observable, output.observables),
     (output.apart, once),
     (output.overview, once),
     (output.snapshots, once),

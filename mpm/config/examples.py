@@ -33,6 +33,8 @@ UNITS: dict[str, Any] = {
     "1/m": "300 1/m",
     "1/s": "-0.05 1/s",
     "1/K": "1e-4 1/K",
+    "1/s*K": "0.05 K/s",
+    "J/mol": "139 kJ/mol",
     "": 0.5,
 }
 NAMES: dict[str, Any] = {
@@ -40,6 +42,9 @@ NAMES: dict[str, Any] = {
     "aspect ratio times kelvin": "1 K",
     "Poisson ratio": 0.3,
     "exponent": 2,
+    "frequency factor": "2.8e18 1/s",
+    "rate of setting": "1e-3 1/s",
+    "rate of setting times kelvin": "0.05 K/s",
     "number": 1,
     "rate of drag": "10 1/s",
     "relative tolerance": 1e-4,

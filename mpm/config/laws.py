@@ -4,11 +4,14 @@ Constant   v                                                        written as a
 Table      values over temperatures, linear or PCHIP between them, constant outside
 Bump       base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2))     latent heat as apparent specific heat; `heat` is the integral of the bump
 Logistic   low + (high - low)/(1 + exp(-(T - at)/width))
+Set        raw + X (baked - raw), X the degree of setting of the material (M, eta, E; mpm.materials.setting)
+Arrhenius  k0 exp(-Ea/(R T)), the rate of setting alone
 Porosity   of the aspect ratio p0 alone: by the plastic Poisson ratio (mpm.materials.porous)
 
 After validation a law is always one of these classes: dispatch with `isinstance` (each parameter has subclasses of its own that carry its unit).
 """
 
+import copy
 import functools
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
@@ -79,6 +82,20 @@ class Porosity(Kind):
     exponent: Annotated[float, Quantity("", "exponent", above=0, most=10)] = doc(2.0, description="exponent; about 2 in compacted powders")
 
 
+class Arrhenius(Kind):
+    """k0 exp(-activation/(R T)), R = 8.314 J/(mol K)."""
+
+    kind: ClassVar[str] = "arrhenius"
+    k0: Annotated[float, Quantity("1/s", "frequency factor", above=0)] = doc(description="rate at infinite temperature")
+    activation: Annotated[float, Quantity("J/mol", "activation energy", least=0)] = doc(description="activation energy")
+
+
+class Set(Kind):
+    """raw + X (baked - raw): X grows from 0 to 1 by dX/dt = rate (1 - X), and never falls. One X for all that a material sets."""
+
+    kind: ClassVar[str] = "set"
+
+
 def of_unit(base: type[Kind], quantity: Quantity, home: dict[str, Any], /, **fields: Any) -> type[Kind]:
     """A law's class for one quantity; a name of the module whose globals `home` are, so that experiments can be sent to other processes."""
     name = base.__name__ + "".join(letter for letter in quantity.name.title() if letter.isalpha())
@@ -123,6 +140,15 @@ class Law(Menu):
         constant = {"type": "object", "properties": {"constant": number}, "required": ["constant"], "additionalProperties": False}
         return {**number, "anyOf": [*number["anyOf"], {"oneOf": [constant, *kinds["oneOf"][1:]]}]}
 
+    def along(self, kind: type[Kind]) -> "Law":
+        """The same menu with one kind more."""
+        found = copy.copy(self)
+        found.kinds = {**self.kinds, kind.kind: kind}
+        return found
+
+
+Rate = Annotated[Constant | Table | Bump | Logistic | Arrhenius, Law(Quantity("1/s", "rate of setting", least=0, difference=True), Arrhenius)]
+
 
 @functools.cache
 def law(unit: str, name: str, **bounds: Any) -> Any:
@@ -134,3 +160,27 @@ def law(unit: str, name: str, **bounds: Any) -> Any:
 def porous(unit: str, name: str, **bounds: Any) -> Any:
     """The type of a parameter that may depend on temperature, or on porosity."""
     return Annotated[Constant | Table | Bump | Logistic | Porosity, Law(replace(Quantity(unit, name), difference=True, **bounds), Porosity)]
+
+
+@functools.cache
+def settable(unit: str, name: str, **bounds: Any) -> Any:
+    """The type of a parameter that may depend on temperature, or on a degree of setting between two such laws."""
+    quantity = replace(Quantity(unit, name), difference=True, **bounds)
+    menu = Law(quantity)
+    end = Annotated[Constant | Table | Bump | Logistic, menu]
+    told = "rate of setting; one for the whole material, said once"
+    fields = {"raw": (end, doc(description="before")), "baked": (end, doc(description="after")), "rate": (Rate | None, doc(None, description=told))}
+    kind = of_unit(Set, quantity, globals(), **fields)
+    return Annotated[Constant | Table | Bump | Logistic | Set, menu.along(kind)]
+
+
+def sets(material: Any) -> dict[tuple[str, str, str], Set]:
+    """The parameters of a material that set, by where they stand in it."""
+    places = ((section, getattr(material, section), name) for section, name in (("elastic", "E"), ("flow", "M"), ("flow", "eta")))
+    found = ((section, law.kind, name, getattr(law, name, None)) for section, law, name in places if law is not None)
+    return {(section, kind, name): one for section, kind, name, one in found if isinstance(one, Set)}
+
+
+def rate_of(material: Any) -> Any:
+    """The rate at which a material sets; None where nothing of it does."""
+    return next((one.rate for one in sets(material).values() if one.rate is not None), None)

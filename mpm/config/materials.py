@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
-from mpm.config.laws import law, porous
+from mpm.config.laws import law, porous, settable
 from mpm.config.quantities import Density, Fraction, Modulus, PerKelvin, Pressure, Quantity, StressPerKelvin, Temperature
 
 PoissonRatio = Annotated[float, Quantity("", "Poisson ratio", above=-1, most=0.4999)]
@@ -17,7 +17,7 @@ class Hencky(Kind):
     """Hencky elasticity: Kirchhoff stress 2 mu eps + lam tr(eps), eps the logarithmic strain. Exactly one pair of moduli: E nu, lam mu, or K mu."""
 
     kind: ClassVar[str] = "hencky"
-    E: law("Pa", "Young's modulus", above=0) | None = doc(None, description="Young's modulus; may depend on temperature")
+    E: settable("Pa", "Young's modulus", above=0) | None = doc(None, description="Young's modulus; may depend on temperature, or set")
     nu: PoissonRatio | None = doc(None, description="Poisson ratio")
     lam: Pressure | None = doc(None, description="first Lamé constant")
     mu: Modulus | None = doc(None, description="shear modulus, second Lamé constant")
@@ -49,9 +49,9 @@ class Ellipse(Kind):
     """Viscoplastic flow outside the ellipse p^2/p0^2 + q^2 = M^2, with overstress viscosity eta (0: rate-independent)."""
 
     kind: ClassVar[str] = "ellipse"
-    M: law("Pa", "yield stress", above=0) = doc(description="von Mises stress at yield without pressure")
+    M: settable("Pa", "yield stress", above=0) = doc(description="von Mises stress at yield without pressure")
     p0: porous("", "aspect ratio", above=0) = doc(description="aspect ratio of the ellipse: the yield pressure is p0 M; may follow temperature or porosity")
-    eta: law("Pa*s", "viscosity", least=0) = doc(description="viscosity of the overstress")
+    eta: settable("Pa*s", "viscosity", least=0) = doc(description="viscosity of the overstress")
     map: Annotated[Literal["radial", "clipped"], Choice()] = doc("radial", description="overstress that drives the flow; clipped: q <= M at any rate")
 
 

@@ -51,29 +51,29 @@ def temperature_thermal(thermal, i):
 
 
 @role
-def thermal_stress(expansion, thermal, i):
-    """gamma (Theta - Theta_0) of particle i [Pa]."""
+def thermal_stress(expansion, thermal, i, at):
+    """gamma (Theta - Theta_0) of particle i [Pa]; `at` is what its laws are asked with (mpm.heat.setting.condition)."""
     raise TypeError(f"no thermal stress in {type(expansion).__name__}")
 
 
 @thermal_stress.register(NoExpansion)
-def thermal_stress_no_expansion(expansion, thermal, i):
+def thermal_stress_no_expansion(expansion, thermal, i, at):
     return 0.0
 
 
 @thermal_stress.register(Expansion)
-def thermal_stress_expansion(expansion, thermal, i):
+def thermal_stress_expansion(expansion, thermal, i, at):
     return expansion.gamma * (thermal.theta[i] + expansion.shift)
 
 
 @thermal_stress.register(Latched)
-def thermal_stress_latched(expansion, thermal, i):
+def thermal_stress_latched(expansion, thermal, i, at):
     return expansion.gamma * (max(expansion.most[i], min(thermal.theta[i], expansion.set)) + expansion.shift)
 
 
 @thermal_stress.register(Softening)
-def thermal_stress_softening(expansion, thermal, i):
-    return value(expansion.E, temperature(thermal, i)) * thermal_stress(expansion.inner, thermal, i)
+def thermal_stress_softening(expansion, thermal, i, at):
+    return value(expansion.E, at) * thermal_stress(expansion.inner, thermal, i, at)
 
 
 @role

@@ -12,7 +12,8 @@ import math
 import numpy as np
 
 from mpm.boundary import directions
-from mpm.heat.local import temperature, thermal_stress
+from mpm.heat.local import thermal_stress
+from mpm.heat.setting import condition
 from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.materials.ellipse import SQRT6
@@ -135,12 +136,13 @@ def assemble(space, body, nodes, u, dt, r, band, want):
         l1, l2, c, s, trace, d1, d2, d3, size, _, sound = trial(space, body.particles.B, A, p)
         if not sound:
             return math.inf
-        theta = temperature(body.thermal, p)
+        theta = condition(body.setting, body.thermal, p)
         elastic = warmed(body.elastic, theta)
         lam, mu = moduli(elastic)
         K = lam + 2.0 * mu / 3.0
         law = settled(body.flow, body.particles.J[p])
-        W, pressure, share, c11, c12, c22, _, good = tangent(law, elastic, trace, size, thermal_stress(body.expansion, body.thermal, p), theta, dt)
+        thermal = thermal_stress(body.expansion, body.thermal, p, theta)
+        W, pressure, share, c11, c12, c22, _, good = tangent(law, elastic, trace, size, thermal, theta, dt)
         if not good:
             return math.inf
         total += V0[p] * W

@@ -4,7 +4,8 @@ import math
 
 from mpm.basis import inverse_moment, stencil
 from mpm.boundary import directions
-from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, thermal_stress
+from mpm.heat.setting import condition
 from mpm.implicit.assemble import elastic_b, increment, sign, trial
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
@@ -135,8 +136,8 @@ def deliver(space, body, nodes, u, dt, work, report):
         if not sound or not 1e-3 < J < 1e3:
             report[CODE], report[PARTICLE] = INVERTED if not sound else OVERSTRETCHED, p
             return
-        theta = temperature(body.thermal, p)
-        thermal = thermal_stress(body.expansion, body.thermal, p)
+        theta = condition(body.setting, body.thermal, p)
+        thermal = thermal_stress(body.expansion, body.thermal, p, theta)
         law = settled(body.flow, particles.J[p])
         elastic = warmed(body.elastic, theta)
         _, pressure, part, _, _, _, lost, _ = tangent(law, elastic, trace, size, thermal, theta, dt)

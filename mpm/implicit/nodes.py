@@ -126,7 +126,7 @@ def new_nodes(space, gradient, particles, walls, gravity, mu: float) -> Nodes:
         lines.append(row)
         stiff.append(GAMMA * mu * radius[row].mean(axis=1) * space.h ** (D - 2))
     lines, stiff = np.concatenate(lines), np.concatenate(stiff)
-    far = eq[lines].reshape(len(lines), -1)
+    far = eq[lines].reshape(len(lines), 4 * D)
     spread = far.max(axis=1) - np.where(far < 0, eq.size, far).min(axis=1) if len(lines) else np.zeros(1, np.int64)
     m = sums[active, 0]
     v = np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None])

@@ -8,7 +8,8 @@ Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau 
 import math
 
 from mpm.basis import inverse_moment
-from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, thermal_stress
+from mpm.heat.setting import condition
 from mpm.integrate import stress_neo_hookean  # noqa: F401 - registers the law
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, HOOP, STRAIN, SWELLED, fail, guard, strain_plane, strain_volume
 from mpm.integrate.stress_hencky import ACROSS, carry_surface, flows, stress_plane, stress_volume, swells
@@ -50,10 +51,10 @@ def load_chunk(space, gradient, particles, chunk, first, count, dt):
 def answer(body, i, e1, e2, e3, grow, dt, report):
     """Return map, heating and principal Kirchhoff stresses of particle i: (e1, e2, e3, t1, t2, t3)."""
     trace_before = e1 + e2 + e3 - math.log1p(grow)
-    thermal = thermal_stress(body.expansion, body.thermal, i)
+    theta = condition(body.setting, body.thermal, i)
+    thermal = thermal_stress(body.expansion, body.thermal, i, theta)
     lost = 0.0
     if dt > 0.0:
-        theta = temperature(body.thermal, i)
         e1, e2, e3, lost, ok = flow(settled(body.flow, body.particles.J[i]), warmed(body.elastic, theta), e1, e2, e3, thermal, theta, dt)
         if not ok:
             fail(report, RETURN_MAP, i)
@@ -65,9 +66,10 @@ def answer(body, i, e1, e2, e3, grow, dt, report):
         report[HEATED] += body.particles.V0[i] * gained
         report[DISSIPATED] += body.particles.V0[i] * lost
         latch(body.expansion, body.thermal, i)
-        thermal = thermal_stress(body.expansion, body.thermal, i)
+        theta = condition(body.setting, body.thermal, i)
+        thermal = thermal_stress(body.expansion, body.thermal, i, theta)
     report[STRAIN] = min(report[STRAIN], e1, e2, e3)
-    t1, t2, t3 = stress(warmed(body.elastic, temperature(body.thermal, i)), e1, e2, e3, thermal)
+    t1, t2, t3 = stress(warmed(body.elastic, theta), e1, e2, e3, thermal)
     return e1, e2, e3, t1, t2, t3
 
 

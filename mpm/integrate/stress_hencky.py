@@ -6,6 +6,7 @@ In three dimensions without principal axes (mpm.isotropic), in a plane with thos
 
 from mpm.heat.lanes import grow_warmer, heat_eight
 from mpm.heat.local import latch, temperature, thermal_stress
+from mpm.heat.setting import condition, conditions_eight
 from mpm.integrate.deformation import carry_owners
 from mpm.integrate.strain import CODE, DISSIPATED, GROW, HEATED, JACOBIAN, STRAIN, SWELLED, deliver_plane, deliver_volume, fail
 from mpm.isotropic import exponential3, largest, logarithm3, lowest3, norm, split
@@ -103,7 +104,7 @@ def tell(body, chunk, first, p, count):
     for q in range(p, p + EIGHT):
         i = first + min(q, count - 1)
         poke(e, WARMTH * n + q, temperature(body.thermal, i))
-        poke(e, PRESSURE * n + q, thermal_stress(body.expansion, body.thermal, i))
+        poke(e, PRESSURE * n + q, thermal_stress(body.expansion, body.thermal, i, condition(body.setting, body.thermal, i)))
 
 
 @kernel(inline=True)
@@ -146,7 +147,7 @@ def answer(body, chunk, first, p, count, trace, deviator, dt, report):
     """
     e, n = chunk.e, chunk.e.shape[1]
     tell(body, chunk, first, p, count)
-    theta, thermal = load8(e, WARMTH * n + p), load8(e, PRESSURE * n + p)
+    theta, thermal = conditions_eight(body.setting, load8(e, WARMTH * n + p), first + p, count - p), load8(e, PRESSURE * n + p)
     lam, mu = moduli_lanes(body.elastic, theta)
     share, flowed = like(trace, 1.0), like(trace, 0.0)
     if dt > 0.0:
@@ -161,7 +162,7 @@ def answer(body, chunk, first, p, count, trace, deviator, dt, report):
             heat_all(body, chunk, first, p, count, report)
         if warms(body.heating):
             tell(body, chunk, first, p, count)
-            theta, thermal = load8(e, WARMTH * n + p), load8(e, PRESSURE * n + p)
+            theta, thermal = conditions_eight(body.setting, load8(e, WARMTH * n + p), first + p, count - p), load8(e, PRESSURE * n + p)
             lam, mu = moduli_lanes(body.elastic, theta)
     return trace, share, flowed, lam, mu, thermal
 

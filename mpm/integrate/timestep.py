@@ -13,7 +13,8 @@ limit: between transfers a lone particle at the edge of a cell bears 1/3 only (A
 between transfers: there is no limit for them here, and `auto` takes implicit steps (mpm/scene/build.py).
 
 The heat limits bound the sub-step of a heat step; heat steps themselves come at their own pace,
-PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and above 0.2 the error grows (docs/physics.md 11).
+PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and above 0.2 the error grows (docs/physics.md 11). Where a body sets, at most
+SETTING of its shortest time constant: its laws learn of X once a heat step.
 """
 
 from dataclasses import dataclass
@@ -21,11 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
+from mpm.heat.setting import conditions
 from mpm.integrate.strain import RATE, SPEED, STRAIN, SWELL
-from mpm.materials import Constant, HenckyWarm, moduli, value, warmed
-from mpm.state import Expansion, GridHeating, Heating, Load, NoExchange, Radiation, Thermal
+from mpm.materials import Condition, Constant, HenckyWarm, moduli, value, warmed
+from mpm.state import Expansion, GridHeating, Heating, Load, NoExchange, Radiation, Setting, Thermal
 
-WAVE, CONDUCTION, EXCHANGE, PACE, DRAG = 0.5, 0.4, 2.0, 0.15, 0.5
+WAVE, CONDUCTION, EXCHANGE, PACE, DRAG, SETTING = 0.5, 0.4, 2.0, 0.15, 0.5, 0.05
 SUBSTEPS = 0.8
 
 
@@ -73,6 +75,8 @@ def limits(space, D, bodies, reports) -> Limits:
             if kappa > 0:
                 keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
                 pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
+            if isinstance(body.setting, Setting) and (fastest := float(np.max(body.setting.k))) > 0:
+                pace = min(pace, SETTING / fastest)
             beta = strongest(body.surface, body.thermal)
             if beta > 0:
                 keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * beta * max(J, 1.0)))
@@ -83,10 +87,12 @@ def stiffest(body) -> tuple[float, float]:
     """Lame constants (lam, mu) [Pa] of the stiffest of the particles."""
     if not isinstance(body.elastic, HenckyWarm):
         return moduli(body.elastic)
-    if not isinstance(body.thermal, Thermal):
-        return moduli(warmed(body.elastic, body.thermal.temperature))
-    low, high = float(np.min(body.thermal.theta)) + body.thermal.zero, float(np.max(body.thermal.theta)) + body.thermal.zero
-    return max((moduli(warmed(body.elastic, t)) for t in np.linspace(low, high, 33)), key=lambda pair: pair[1])
+    at = conditions(body)
+    low, high = at.min(axis=0), at.max(axis=0)
+    between = np.linspace(low, high, 33)
+    if isinstance(body.setting, Setting):  # linear in X: the stiffest is at one of its ends
+        between = [Condition(t, X) for t, _ in between for X in (low[1], high[1])]
+    return max((moduli(warmed(body.elastic, t)) for t in between), key=lambda pair: pair[1])
 
 
 def strongest(surface, thermal) -> float:

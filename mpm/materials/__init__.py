@@ -20,6 +20,7 @@ To add    a file here that registers its NamedTuple with the roles of its kind, 
 
 Further files
     ellipse       what both return maps share
+    setting       laws that follow a degree of setting, and its rate
     return_maps   the return map on arrays, for notebooks and calibration
 """
 
@@ -33,6 +34,7 @@ from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.return_maps import return_map
 from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, tangent, temperature_of, value, warmed
+from mpm.materials.setting import GAS, Alike, Arrhenius, Condition, Sets
 from mpm.materials.warm import HenckyWarm
 
 ELASTIC = (Hencky,)  # those that may flow; NeoHookean is elastic only
@@ -40,7 +42,7 @@ FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
-    "ELASTIC", "FLOW", "LAWS", "Bump", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm", "Logistic", "NeoHookean", "NoFlow",
-    "Porous", "Table", "energy", "enthalpies", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes", "return_map", "settled",
-    "stress", "table", "tangent", "temperature_of", "temperatures", "value", "values", "warmed",
+    "ELASTIC", "FLOW", "GAS", "LAWS", "Alike", "Arrhenius", "Bump", "Condition", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm",
+    "Logistic", "NeoHookean", "NoFlow", "Porous", "Sets", "Table", "energy", "enthalpies", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes",
+    "return_map", "settled", "stress", "table", "tangent", "temperature_of", "temperatures", "value", "values", "warmed",
 ]  # fmt: skip

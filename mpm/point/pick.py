@@ -6,9 +6,24 @@ So kinds stay types and values stay run-time arguments: a batch of any size and 
 import numpy as np
 
 from mpm.jit import role
-from mpm.materials import Bump, Constant, EllipseClipped, EllipseRadial, Hencky, HenckyWarm, Logistic, NeoHookean, NoFlow, Porous, Table
+from mpm.materials import (
+    Alike,
+    Arrhenius,
+    Bump,
+    Constant,
+    EllipseClipped,
+    EllipseRadial,
+    Hencky,
+    HenckyWarm,
+    Logistic,
+    NeoHookean,
+    NoFlow,
+    Porous,
+    Sets,
+    Table,
+)
 from mpm.point.state import Lumped, NoConduction, Rigid
-from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, Softening, Thermal
+from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, NoSetting, Setting, Softening, Thermal
 
 
 @role
@@ -21,7 +36,7 @@ def pick_same(law, i):
     return law
 
 
-for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating):
+for absent in (Rigid, NoFlow, NoConduction, NoExchange, NoExpansion, NoHeating, NoSetting):
     pick.register(absent, pick_same)
 
 
@@ -68,6 +83,26 @@ def pick_logistic(law, i):
 @pick.register(Table)
 def pick_table(law, i):
     return Table(law.theta[i], law.c[i], law.h[i])
+
+
+@pick.register(Sets)
+def pick_sets(law, i):
+    return Sets(pick(law.raw, i), pick(law.baked, i))
+
+
+@pick.register(Alike)
+def pick_alike(law, i):
+    return Alike(pick(law.law, i))
+
+
+@pick.register(Arrhenius)
+def pick_arrhenius(law, i):
+    return Arrhenius(law.k0[i], law.Ta[i])
+
+
+@pick.register(Setting)
+def pick_setting(law, i):
+    return Setting(law.X[i], law.k[i], pick(law.rate, i))
 
 
 @pick.register(EllipseRadial)

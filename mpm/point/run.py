@@ -6,9 +6,9 @@ import numpy as np
 
 from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, Outcome, outcome
-from mpm.point.state import COLUMNS, NO_EQUILIBRIUM, WIDTH, Matter, Program, Progress, Rigid
+from mpm.point.state import COLUMNS, LOCAL, NO_EQUILIBRIUM, WIDTH, Matter, Program, Progress, Rigid
 from mpm.point.time_loop import advance
-from mpm.state import Isothermal, Run
+from mpm.state import Isothermal, Run, Setting
 
 ADVICE = "the prescribed stress may be past what the material bears (eta = 0 has a limit load), or lower `time.step`"
 MECHANICAL = COLUMNS[:14]
@@ -31,7 +31,7 @@ def solve(matter: Matter, program: Program, beat=None, keeper=None) -> list[Run]
     """
     began = time.perf_counter()
     progress = start(matter, program)
-    out = np.zeros((len(program.times), WIDTH))
+    out = np.zeros((len(program.times), WIDTH + isinstance(matter.setting, Setting)))
     most = int(np.max(np.diff(program.first))) - 1
     done, rows, stopped, earlier = 0, 1 if beat is not None or keeper is not None else most, False, 0.0
     before = keeper.found if keeper is not None else None
@@ -62,7 +62,9 @@ def run(matter: Matter, program: Program, progress: Progress, out: np.ndarray, i
     if not isinstance(matter.thermal, Isothermal):
         series |= {name: rows[:, len(MECHANICAL) + k] for k, name in enumerate(COLUMNS[len(MECHANICAL) : -1])}
         series["temperature_min"] = series["temperature_max"] = series["temperature_mean"]
-        series["heat_ledger"] = series["heat_total"] - series["heat_exchanged"] - rows[:, -1]
+        series["heat_ledger"] = series["heat_total"] - series["heat_exchanged"] - rows[:, LOCAL]
+    if isinstance(matter.setting, Setting):
+        series["setting_mean"] = series["setting_min"] = rows[:, WIDTH]
     finals = {name: float(values[-1]) for name, values in series.items()}
     finals["steps"] = float(progress.steps[i])
     facts = {"crossed": progress.crossed[i].tolist()}

@@ -4,6 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mpm.state import NoSetting
+
 RATE, NOMINAL, STRESS = range(3)  # what is prescribed in a direction: rate of the logarithmic strain, rate of the stretch, Cauchy stress
 HELD = RATE  # at rate zero
 
@@ -43,6 +45,7 @@ class Matter(NamedTuple):
     heating: Any
     elastic_strain: np.ndarray  # (N, 3) principal elastic Hencky strains [-]
     strain: np.ndarray  # (N, 3) principal total Hencky strains [-]
+    setting: Any = NoSetting()  # or mpm.state.Setting
 
 
 class Program(NamedTuple):

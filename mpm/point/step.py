@@ -7,7 +7,8 @@ stress to round-off. Slopes by differences, so that every law and coupling is se
 
 import math
 
-from mpm.heat.local import heat_locally, latch, temperature, thermal_stress
+from mpm.heat.local import heat_locally, latch, thermal_stress
+from mpm.heat.setting import condition, set_one
 from mpm.jit import kernel, role
 from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, energy, flow, moduli, settled, stress, value, warmed
 from mpm.point.heat import put, time_constant
@@ -65,7 +66,7 @@ def shares(matter, speed, ramp):
     """
     total = matter.strain
     law = settled(matter.flow, math.exp(total[0] + total[1] + total[2]))
-    time, strain = relaxation(law, matter.elastic, temperature(matter.thermal, 0))
+    time, strain = relaxation(law, matter.elastic, condition(matter.setting, matter.thermal, 0))
     relax = time / RELAXATION if time > 0.0 else math.inf
     bend = strain / (YIELD * speed) if speed > 0.0 else math.inf
     warm = RAMP / ramp if ramp > 0.0 and strain < math.inf else math.inf
@@ -80,14 +81,15 @@ def answer(matter, e, d, base, held, dt):
     Depends on nothing else; leaves the temperature of the end of the step in `matter.thermal`.
     """
     put(matter.thermal, base)
-    thermal = thermal_stress(matter.expansion, matter.thermal, 0)
-    theta, total = temperature(matter.thermal, 0), matter.strain
+    theta, total = condition(matter.setting, matter.thermal, 0), matter.strain
+    thermal = thermal_stress(matter.expansion, matter.thermal, 0, theta)
     law = settled(matter.flow, math.exp((total[0] + d[0]) + (total[1] + d[1]) + (total[2] + d[2])))
     e1, e2, e3, lost, ok = flow(law, warmed(matter.elastic, theta), e[0] + d[0], e[1] + d[1], e[2] + d[2], thermal, theta, dt)
     gained = heat_locally(matter.heating, matter.thermal, 0, matter.density, (e1 - e[0]) + (e2 - e[1]) + (e3 - e[2]), lost)
     if held:
         put(matter.thermal, base)
-    t1, t2, t3 = stress(warmed(matter.elastic, temperature(matter.thermal, 0)), e1, e2, e3, thermal_stress(matter.expansion, matter.thermal, 0))
+    theta = condition(matter.setting, matter.thermal, 0)
+    t1, t2, t3 = stress(warmed(matter.elastic, theta), e1, e2, e3, thermal_stress(matter.expansion, matter.thermal, 0, theta))
     return e1, e2, e3, t1, t2, t3, lost, gained, ok
 
 
@@ -132,7 +134,7 @@ def solve3(A, r, x):
 def equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
     """Find the increments d[k] of the directions whose stress is prescribed, from a first guess in d. work (8, 3). False: no equilibrium was found."""
     A, r, x, near, trial = work[0:3], work[3], work[4], work[5], work[6]
-    lam, mu = moduli(warmed(matter.elastic, temperature(matter.thermal, 0)))
+    lam, mu = moduli(warmed(matter.elastic, condition(matter.setting, matter.thermal, 0)))
     stiff = lam + 2.0 * mu
     worst, ok = residual(matter, e, d, total, kind, target, base, held, dt, r)
     if not ok:
@@ -142,7 +144,8 @@ def equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
     for _ in range(60):
         size = max(abs(e[0]) + abs(d[0]), abs(e[1]) + abs(d[1]), abs(e[2]) + abs(d[2]))
         put(matter.thermal, base)
-        scale = stiff * size + abs(thermal_stress(matter.expansion, matter.thermal, 0)) + max(abs(target[0]), abs(target[1]), abs(target[2]))
+        thermal = thermal_stress(matter.expansion, matter.thermal, 0, condition(matter.setting, matter.thermal, 0))
+        scale = stiff * size + abs(thermal) + max(abs(target[0]), abs(target[1]), abs(target[2]))
         if not ok:
             return False
         if worst <= 4.0 * EPS * scale:
@@ -190,6 +193,8 @@ def step(matter, e, total, d, kind, target, base, held, dt, work):
 
     Returns (dissipated, heated, ok) [J/m3].
     """
+    put(matter.thermal, base)
+    set_one(matter.setting, matter.thermal, 0, dt)
     if kind[0] == STRESS or kind[1] == STRESS or kind[2] == STRESS:
         if not equilibrate(matter, e, d, total, kind, target, base, held, dt, work):
             return 0.0, 0.0, False

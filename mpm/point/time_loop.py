@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from mpm.heat.local import temperature, thermal_stress
-from mpm.jit import kernel
+from mpm.heat.setting import condition
+from mpm.jit import kernel, role
 from mpm.materials import energy, stress, warmed
 from mpm.outcome import COMPLETED, INVERTED, MAX_PRINCIPLE, NON_FINITE, OVERSTRETCHED
 from mpm.point.heat import above, content, datum, exchange
@@ -25,11 +26,13 @@ from mpm.point.state import (
     STRESS,
     SWELL,
     TEMPERATURE,
+    WIDTH,
     Matter,
     P,
     Q,
 )  # fmt: skip
 from mpm.point.step import shares, step
+from mpm.state import NoSetting, Setting
 
 MOST = 1000.0  # automatic steps between two output times, at most: what relaxes faster is followed by its limit, which is stable
 LONGEST = math.log(1e3)  # |ln J| past which a point has left the model
@@ -37,7 +40,7 @@ LONGEST = math.log(1e3)  # |ln J| past which a point has left the model
 
 @kernel
 def advance(matter, program, progress, out, rows):
-    """Carry every point over at most `rows` more of its rows; out (R, WIDTH) is filled row by row. A point that fails stops at its last good row."""
+    """Carry every point over at most `rows` more of its rows; out (R, WIDTH or more) is filled row by row. A point that fails stops at its last good row."""
     work, d, rates = np.zeros((8, 3)), np.zeros(3), np.zeros(3)
     for i in range(matter.density.shape[0]):
         one = Matter(
@@ -50,6 +53,7 @@ def advance(matter, program, progress, out, rows):
             pick(matter.heating, i),
             matter.elastic_strain[i],
             matter.strain[i],
+            pick(matter.setting, i),
         )
         if progress.row[i] < 0:
             progress.zero[i] = content(one.thermal)
@@ -168,12 +172,29 @@ def cross(program, progress, i, before, after, start, dt):
             progress.crossed[i, k] = start + dt * (goal - before) / (after - before)
 
 
+@role
+def record_setting(setting, row):
+    """X behind the other columns, where the point sets."""
+    raise TypeError(f"no setting in {type(setting).__name__}")
+
+
+@record_setting.register(NoSetting)
+def record_setting_no_setting(setting, row):
+    return None
+
+
+@record_setting.register(Setting)
+def record_setting_setting(setting, row):
+    row[WIDTH] = setting.X[0]
+
+
 @kernel
 def record(one, progress, i, row):
     """One row of output: COLUMNS of mpm.point.state."""
     e, total = one.elastic_strain, one.strain
-    elastic = warmed(one.elastic, temperature(one.thermal, 0))
-    t1, t2, t3 = stress(elastic, e[0], e[1], e[2], thermal_stress(one.expansion, one.thermal, 0))
+    at = condition(one.setting, one.thermal, 0)
+    elastic = warmed(one.elastic, at)
+    t1, t2, t3 = stress(elastic, e[0], e[1], e[2], thermal_stress(one.expansion, one.thermal, 0, at))
     J = math.exp(total[0] + total[1] + total[2])
     for k in range(3):
         row[STRAIN + k], row[ELASTIC + k] = total[k], e[k]
@@ -187,3 +208,4 @@ def record(one, progress, i, row):
     row[HEAT] = one.density * (content(one.thermal) - progress.zero[i])
     row[EXCHANGED] = progress.sums[i, 1]
     row[LOCAL] = progress.sums[i, 2]
+    record_setting(one.setting, row)

@@ -76,6 +76,8 @@ TABLE = [
     ("J.max", "J", "1", SERIES, "largest volume ratio det F"),
     ("pressure.mean", "p", "Pa", SERIES, "mean pressure, weighted with volume"),
     ("strain.max", "ε", "1", SERIES, "largest principal Hencky strain"),
+    ("setting.mean", "X", "1", SERIES, "mean degree of setting, weighted with mass"),
+    ("setting.min", "X", "1", SERIES, "smallest degree of setting"),
     # a material point (grid.dimension 0), along its principal directions
     *((f"stress.{a}{a}", f"σ{a}{a}", "Pa", SERIES, f"Cauchy stress along {a}, positive in tension") for a in "xyz"),
     *((f"strain.{a}{a}", f"ε{a}{a}", "1", SERIES, f"Hencky strain along {a}") for a in "xyz"),
@@ -122,6 +124,7 @@ TABLE = [
     ("position", "x", "m", PARTICLES, "position"),
     ("velocity", "v", "m/s", PARTICLES, "velocity"),
     ("temperature", "θ", "K", PARTICLES, "temperature"),
+    ("setting", "X", "1", PARTICLES, "degree of setting; 0 where a material does not set"),
     ("density", "ρ", "kg/m3", GRID, "density"),
     ("pressure", "p", "Pa", PARTICLES, "pressure"),
     ("J", "J", "1", PARTICLES, "volume ratio det F"),
@@ -156,7 +159,7 @@ NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipatio
                   "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
 FIELDS_GRID = ("temperature", "velocity", "density")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body",
-                    "stress", "strain", "displacement", "reference_position", "velocity_gradient", "id")  # fmt: skip
+                    "stress", "strain", "displacement", "reference_position", "velocity_gradient", "id", "setting")  # fmt: skip
 TENSORS = ("stress", "strain", "velocity_gradient")  # fields of particles with a column a component
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 

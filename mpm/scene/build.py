@@ -12,7 +12,6 @@ from mpm.basis import BASES
 from mpm.boundary import extents
 from mpm.config.shapes_fit import home
 from mpm.error import Motion
-from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
@@ -20,7 +19,7 @@ from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit
 from mpm.scene.inventory import ticks
-from mpm.scene.law import elastic_law, expansion_law, law
+from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.meeting import cornered, meeting, plan_meetings
 from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
@@ -110,11 +109,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     J = np.ones(N)
     arrays = (x, v, C, np.zeros((N, STRAINS[D])), J, material.density * cut.volume, cut.volume)
     particles = Particles(*(np.ascontiguousarray(a, dtype=dtype) for a in arrays))
-    elastic = elastic_law(material.elastic)
-    flow = NoFlow()
-    if material.flow is not None:
-        ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
-        flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+    elastic, flow = mechanical_laws(material)
     seams, thermal, surface, expansion, heating, surroundings = None, Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
     if material.heat is not None:
         theta = np.full(N, config.temperature - zero, dtype)
@@ -130,7 +125,9 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
     source = loaded(experiment, name, faces, space, gradient_operator(experiment))
-    return Body(particles, thermal, surface, elastic, flow, expansion, heating, source), surroundings, seams, outline
+    setting = setting_law(material, np.full(N, config.temperature))
+    body = Body(particles, thermal, surface, elastic, flow, expansion, heating, source, setting=setting)
+    return body, surroundings, seams, outline
 
 
 def schemes(experiment):

@@ -4,6 +4,7 @@ import math
 from itertools import combinations
 
 from mpm.config.boundary import EXCHANGES
+from mpm.config.laws import sets
 from mpm.config.loads import LOADS
 
 MANY = 10  # pairs of bodies that are told one by one
@@ -17,6 +18,8 @@ def physics(experiment) -> dict[str, list[str]]:
             law = getattr(material, part)
             if law is not None:
                 present.add(f"{part}: {type(law).kind}")
+        if setting := sets(material):
+            present.add(f"setting: {', '.join(name for *_, name in setting)}")
         if material.heating is not None:
             present |= {f"heating: {part}" for part in ("elastic", "dissipation") if getattr(material.heating, part) is not None}
     present |= {f"exchange: {kind}" for kind in EXCHANGES for entry in experiment.surfaces if getattr(entry, kind) is not None}

@@ -2,15 +2,35 @@
 
 import numpy as np
 
-from mpm.materials import Bump, Constant, Hencky, HenckyWarm, Logistic, NeoHookean, Porous, table
+from mpm.config.laws import rate_of
+from mpm.materials import (
+    GAS,
+    Alike,
+    Arrhenius,
+    Bump,
+    Constant,
+    EllipseClipped,
+    EllipseRadial,
+    Hencky,
+    HenckyWarm,
+    Logistic,
+    NeoHookean,
+    NoFlow,
+    Porous,
+    Sets,
+    table,
+    value,
+)
 from mpm.scene.menus import known
-from mpm.state import Expansion, Latched, Softening
+from mpm.state import Expansion, Latched, NoSetting, Setting, Softening
 
 LAW = {
     "constant": lambda model: Constant(float(model.value)),
     "table": lambda model: table(model.temperature, model.value, model.interpolation),
     "bump": lambda model: Bump(model.base, model.heat, model.at, model.width),
     "logistic": lambda model: Logistic(model.low, model.high, model.at, model.width),
+    "set": lambda model: Sets(law(model.raw), law(model.baked)),
+    "arrhenius": lambda model: Arrhenius(model.k0, model.activation / GAS),
     "porosity": lambda model: Porous(1.0 - model.initial, model.exponent),
 }
 
@@ -20,13 +40,35 @@ def law(model):
     return known(LAW, type(model).kind, "law")(model)
 
 
-def elastic_law(model):
-    """The run-time law, with Lame constants from whichever pair was given; of E = 1, with its law, where E follows temperature."""
+def of_particles(model, sets: bool):
+    """The run-time law of a mechanical parameter; where the material sets, one that is asked with temperature and X."""
+    return law(model) if not sets or type(model).kind == "set" else Alike(law(model))
+
+
+def mechanical_laws(material):
+    """The run-time laws (elastic, flow) of a material; elastic is None where it is rigid."""
+    sets, flow = rate_of(material) is not None, NoFlow()
+    if material.flow is not None:
+        kind = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
+        flow = kind(*(of_particles(getattr(material.flow, name), sets) for name in ("M", "p0", "eta")))
+    return elastic_law(material.elastic, sets) if material.elastic is not None else None, flow
+
+
+def setting_law(material, theta: np.ndarray):
+    """Nothing has set yet; theta (N,) absolute temperatures at the start."""
+    if (rate := rate_of(material)) is None:
+        return NoSetting()
+    run = law(rate)
+    return Setting(np.zeros(len(theta)), np.array([value(run, float(t)) for t in theta]), run)
+
+
+def elastic_law(model, sets: bool = False):
+    """The run-time law, with Lame constants from whichever pair was given; of E = 1, with its law, where E follows temperature or setting."""
     kind = {"hencky": Hencky, "neo_hookean": NeoHookean}[type(model).kind]
     if model.E is not None:
         E = float(model.E.value) if type(model.E).kind == "constant" else 1.0
         found = kind(E / (2 * (1 + model.nu)), E * model.nu / ((1 + model.nu) * (1 - 2 * model.nu)))
-        return found if type(model.E).kind == "constant" else HenckyWarm(found, law(model.E))
+        return found if type(model.E).kind == "constant" else HenckyWarm(found, of_particles(model.E, sets))
     if model.lam is not None:
         return kind(model.mu, model.lam)
     return kind(model.mu, model.K - 2 * model.mu / 3)

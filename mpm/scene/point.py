@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm.materials import EllipseClipped, EllipseRadial, NoFlow
 from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
 from mpm.scene.build import output_times
 from mpm.scene.inventory import output_bytes, physics
-from mpm.scene.law import elastic_law, expansion_law, law
+from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import acting
 from mpm.scene.refusal import SceneError
 from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
@@ -152,10 +151,8 @@ def laws(experiment) -> Matter:
     """The matter of one point, with numbers in place of arrays."""
     ((name, body),) = experiment.bodies.items()
     material = experiment.materials[body.material]
-    elastic, flow = (elastic_law(material.elastic) if material.elastic is not None else Rigid()), NoFlow()
-    if material.flow is not None:
-        kind = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
-        flow = kind(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+    elastic, flow = mechanical_laws(material)
+    elastic = elastic or Rigid()
     thermal, exchange, expansion, heating = Isothermal(body.temperature), NoExchange(), NoExpansion(), NoHeating()
     if material.heat is not None:
         thermal = Thermal(np.zeros(1), np.zeros(1), body.temperature, NoConduction(), law(material.heat.alpha))
@@ -166,7 +163,8 @@ def laws(experiment) -> Matter:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
     strain = np.array([getattr(body.shape.strain, axis) for axis in AXES])
-    return Matter(material.density, elastic, flow, thermal, exchange, expansion, heating, strain, strain.copy())
+    setting = setting_law(material, np.array([body.temperature]))
+    return Matter(material.density, elastic, flow, thermal, exchange, expansion, heating, strain, strain.copy(), setting)
 
 
 def lumped(experiment, name: str, body):

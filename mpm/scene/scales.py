@@ -223,6 +223,9 @@ def along(experiment, extent: tuple[float, ...]) -> float:
 
 def ends(model, low: float, high: float) -> tuple[float, float]:
     """Smallest and largest value of a law between two temperatures."""
+    if type(model).kind == "set":
+        raw, baked = ends(model.raw, low, high), ends(model.baked, low, high)
+        return min(*raw, *baked), max(*raw, *baked)
     run = law(model)
     if type(model).kind == "porosity":  # it follows the volume: from a tenth more open than at the start to pores closed
         return aspect(run.solid / 1.1, run.exponent), aspect(1.0, run.exponent)

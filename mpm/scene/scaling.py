@@ -18,7 +18,13 @@ from mpm.state import Run
 from mpm.warned import warning
 
 FROUDE, KINETIC = 0.02, 0.05
-VALUES = {"constant": ("value",), "table": ("value",), "bump": ("base", "heat"), "logistic": ("low", "high")}  # fields of a law of temperature
+VALUES = {
+    "constant": ("value",),
+    "table": ("value",),
+    "bump": ("base", "heat"),
+    "logistic": ("low", "high"),
+    "arrhenius": ("k0",),
+}  # fields of a law of temperature
 MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
 RATES = {"table": ("value",), "sine": ("mean", "amplitude")}  # its values
 EXCHANGE = {  # the field that is a rate, and the field of the temperature outside
@@ -42,7 +48,9 @@ def changed(model, factor: float, *names: str):
 
 
 def law_times(law, factor: float):
-    """A law of temperature whose values are multiplied."""
+    """A law of temperature or setting whose values are multiplied."""
+    if type(law).kind == "set":
+        return law.model_copy(update={name: law_times(getattr(law, name), factor) for name in ("raw", "baked")})
     return changed(law, factor, *VALUES[type(law).kind])
 
 
@@ -64,13 +72,22 @@ def exchange(model, S: float, rate: str, temperature: str | None):
     return model.model_copy(update={temperature: sooner(getattr(model, temperature), S)}) if temperature else model
 
 
+def setting(model, S: float, *names: str):
+    """The model, its parameters `names` setting S times faster."""
+    for name in names:
+        one = getattr(model, name, None)
+        if one is not None and type(one).kind == "set" and one.rate is not None:
+            model = model.model_copy(update={name: one.model_copy(update={"rate": law_times(one.rate, S)})})
+    return model
+
+
 def material(model, S: float):
     heat, flow = model.heat, model.flow
     if heat is not None:
         heat = heat.model_copy(update={"kappa": law_times(heat.kappa, S)})
     if flow is not None:
-        flow = flow.model_copy(update={"eta": law_times(flow.eta, 1 / S)})
-    return model.model_copy(update={"heat": heat, "flow": flow})
+        flow = setting(flow.model_copy(update={"eta": law_times(flow.eta, 1 / S)}), S, "M", "eta")
+    return model.model_copy(update={"heat": heat, "flow": flow, "elastic": setting(model.elastic, S, "E")})
 
 
 def surface(model, S: float):

@@ -8,10 +8,10 @@ import numpy as np
 from mpm.boundary import CONTACT, KINDS, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
-from mpm.materials import EllipseClipped, EllipseRadial, NoFlow, value
+from mpm.materials import NoFlow, value
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import exchanging_surface
-from mpm.scene.law import elastic_law, expansion_law, law
+from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import pulling
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
@@ -57,11 +57,7 @@ def total_body(experiment, name: str, zero: float, space):
     x, V, surface = points(outline, knots(lower, upper, grid.cell, grid.basis), method.particles, radial)
     order = np.lexsort(np.floor(x / grid.cell + 0.5 + 1e-9).T[::-1])  # points that share nodes follow one another
     x, V = x[order], V[order]
-    elastic = elastic_law(material.elastic)
-    flow = NoFlow()
-    if material.flow is not None:
-        ellipse = {"radial": EllipseRadial, "clipped": EllipseClipped}[material.flow.map]
-        flow = ellipse(law(material.flow.M), law(material.flow.p0), law(material.flow.eta))
+    elastic, flow = mechanical_laws(material)
     velocity, slope = np.zeros((len(x), D)), np.zeros((len(x), D, D))
     if config.velocity is not None:
         velocity += config.velocity
@@ -85,7 +81,8 @@ def total_body(experiment, name: str, zero: float, space):
     if material.heating is not None:
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
-    body = Body(particles, thermal, skin, elastic, flow, expansion, heating)
+    setting = setting_law(material, np.full(len(x), config.temperature))
+    body = Body(particles, thermal, skin, elastic, flow, expansion, heating, setting=setting)
     return body, reference_of(experiment, name, space, body, surface, lower, upper), around
 
 

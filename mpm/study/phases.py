@@ -18,10 +18,11 @@ from mpm.integrate.timestep import limits
 from mpm.jit import kernel
 from mpm.runner import run_point
 from mpm.scene.build import build
-from mpm.simulation import BLOCK, BLOCK_WORK, Clock, advance_block, warm_bodies, work_arrays
+from mpm.simulation import BLOCK, BLOCK_WORK, Clock, advance_block, work_arrays
 from mpm.study.limits import operations, peaks, seconds
 from mpm.sweep.cases import plan
 from mpm.transfer import CHUNK, collect, lay_down, new_chunk, spread
+from mpm.warming import warm_bodies
 
 WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansion": ("expansion", "heating"), "heating": ("heating",)}
 

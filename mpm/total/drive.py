@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from mpm.boundary import directions
-from mpm.diagnostics import nodal, warm_energy
+from mpm.diagnostics import nodal
 from mpm.integrate.timestep import WAVE, Limits, limits
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
 from mpm.state import Average, Thermal
@@ -27,7 +27,6 @@ def begin(space, body, reference) -> None:
 
 def warm_references(scene, clock, dt: float) -> Outcome:
     """One heat step of every body that has heat."""
-    held = warm_energy(scene.space, scene.bodies)
     for body, reference, around in zip(scene.bodies, scene.references, scene.surroundings, strict=True):
         if not isinstance(body.thermal, Thermal):
             continue
@@ -37,7 +36,6 @@ def warm_references(scene, clock, dt: float) -> Outcome:
         if count < 0:
             return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
         clock.exchanged, clock.iterations = clock.exchanged + gained, clock.iterations + count
-    clock.softened += warm_energy(scene.space, scene.bodies) - held
     clock.heat_steps, clock.implicit = clock.heat_steps + 1, clock.implicit + 1
     return outcome(COMPLETED)
 

@@ -46,12 +46,12 @@ def test_no_step_jumps_over_latent_heat():
 def test_absence_is_nothing():
     state = thermal(Constant(2.5))
     assert heat_locally(NoHeating(), state, 0, R0, 0.3, 40.0) == 0.0 and temperature(state, 0) == 300.0
-    assert thermal_stress(NoExpansion(), state, 0) == 0.0
+    assert thermal_stress(NoExpansion(), state, 0, 300.0) == 0.0
     assert temperature(Isothermal(321.0), 5) == 321.0
 
 
 def test_thermal_stress_is_gamma_times_the_rise_over_the_reference():
-    assert thermal_stress(Expansion(20.0, 250.0 - 290.0), thermal(Constant(1.0)), 0) == pytest.approx(200.0, rel=1e-15)
+    assert thermal_stress(Expansion(20.0, 250.0 - 290.0), thermal(Constant(1.0)), 0, 300.0) == pytest.approx(200.0, rel=1e-15)
 
 
 def test_stress_at_thermal_expansion(core):
@@ -76,16 +76,16 @@ def test_latched_expansion_swells_sets_and_stays():
     seen = []
     for theta in (300.0, 310.0, 305.0, 340.0, 360.0, 280.0):
         state.theta[0] = theta - 250.0
-        seen.append(thermal_stress(law, state, 0))
+        seen.append(thermal_stress(law, state, 0, 300.0))
         latch(law, state, 0)
-        assert thermal_stress(law, state, 0) == seen[-1]
+        assert thermal_stress(law, state, 0, 300.0) == seen[-1]
     assert seen == pytest.approx([20.0, 40.0, 40.0, 80.0, 80.0, 80.0], rel=1e-14)
 
 
 def test_thermal_stress_of_moduli_that_follow_temperature():
     """E(Theta) times that of E = 1: at 300 K a table from 2 Pa to 4 Pa gives 3 Pa, and gamma 0.5/K times 310 - 300 K + 10 K of shift."""
     law = Softening(Expansion(0.5, 10.0), table([250.0, 350.0], [2.0, 4.0]))
-    assert thermal_stress(law, thermal(Constant(2.5), theta=300.0, zero=290.0), 0) == pytest.approx(3.0 * 0.5 * 20.0)
+    assert thermal_stress(law, thermal(Constant(2.5), theta=300.0, zero=290.0), 0, 300.0) == pytest.approx(3.0 * 0.5 * 20.0)
 
 
 def test_dissipation_heats_also_where_the_grid_heats_elastically():
