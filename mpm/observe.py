@@ -268,6 +268,8 @@ class Recorder:
         if self.errors is not None:
             finals |= self.errors.finals(np.array(self.times), series)
         finals["steps"] = float(clock.steps or clock.heat_steps)
+        if scene.implicit is not None:
+            finals |= scene.implicit.finals(clock.told)
         run = Run(result, np.array(self.times), series, finals, steps=clock.steps, wall_time=wall_time, facts=facts)
         if len(times := self.frames.times):
             held, run.snapshot_times = self.frames.held, times

@@ -30,7 +30,8 @@ from mpm.outcome import BUDGET, COMPLETED, NO_EQUILIBRIUM, Outcome, outcome
 from mpm.state import Surface
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
-TOLD = ("rejected", "failed", "iterations", "shifts", "deepest", "kinetic_over_work")
+TOLD = {"rejected": "steps_rejected", "failed": "steps_failed", "iterations": "newton_iterations", "shifts": "newton_shifts", "deepest": "wall_depth",
+        "kinetic_over_work": "kinetic_over_work"}  # fmt: skip
 SWIFT, PATIENCE = 0.05, 20
 LEAST = 1e-4  # of the first step that was tried
 REJECT = 2.0  # of the tolerance: an error from which a step is made again
@@ -50,6 +51,10 @@ class Implicit:
     def begin(self) -> dict:
         """What a run counts, and what its next step is to be: steps made again for their error (rejected) or cut (failed), sums, extrema."""
         return {"next": self.first, "last": 0.0, "again": 0, "work": 0.0, "swift": 0} | dict.fromkeys(TOLD, 0)
+
+    def finals(self, told: dict) -> dict[str, float]:
+        """What the dataset says of a run's steps."""
+        return {name: float(told.get(key, 0)) for key, name in TOLD.items()}
 
     def advance(self, *given) -> Outcome:
         """See `advance`."""

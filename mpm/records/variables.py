@@ -111,6 +111,12 @@ TABLE = [
     ("scaling_froude", "Fr", "1", POINT, "time scaling: largest (S v)^2/(g H), to be at most 0.02"),
     ("scaling_kinetic", "", "1", POINT, "time scaling: largest kinetic energy over the work done, to be at most 0.05"),
     ("steps", "", "1", POINT, "time steps taken"),
+    ("steps_rejected", "", "1", POINT, "implicit mechanics: steps made again for their error"),
+    ("steps_failed", "", "1", POINT, "implicit mechanics: steps that found no balance and were cut"),
+    ("newton_iterations", "", "1", POINT, "implicit mechanics: iterations of Newton's method"),
+    ("newton_shifts", "", "1", POINT, "implicit mechanics: matrices that were not positive and got a share of their diagonal"),
+    ("wall_depth", "", "m", POINT, "implicit mechanics: how deep a piece of surface was in a contact wall, at most"),
+    ("kinetic_over_work", "", "1", POINT, "implicit mechanics: kinetic energy of the last step over the work of gravity and loads so far"),
     ("wall_time", "", "s", POINT, "wall time of the run"),
     ("attempts", "", "1", POINT, "times the point was started"),
     # coordinates
