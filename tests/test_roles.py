@@ -141,7 +141,7 @@ ELSEWHERE = {
     "explicit_by_law(Constant)",  # the same
     "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_fbar.py
     "grown(Line)", "grown(Plane)", "grown(Axisymmetric)", "grown(Volume)",  # the same
-    *(f"{role}(Setting)" for role in ("condition", "conditions_eight", "set_one", "record_setting", "pick")), "set_one(NoSetting)",  # tests/heat/test_setting.py, tests/point
+    *(f"{role}(Setting)" for role in ("condition", "conditions_eight", "set_one", "record_setting", "pick")), "set_one(NoSetting)",  # test_setting.py
     *(f"{role}({law})" for role in ("value", "values", "at_volume", "aspects", "pick") for law in ("Sets", "Alike", "Arrhenius")),  # the same
 }  # fmt: skip
 
