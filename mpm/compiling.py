@@ -24,10 +24,12 @@ from mpm.fingerprint import contained, digest, rooms
 
 NAMES = {
     "advance": "the mechanical step", "advance_lanes": "the mechanical step", "heat_step": "the heat step", "heat_chebyshev": "the heat step",
-    "heat_implicit": "the heat step",
+    "heat_implicit": "the heat step", "advance_touching": "the step of bodies that touch",
 }  # fmt: skip
 USUAL = (25, 0.5)  # functions, and seconds, of a kernel never met
-MET = {"advance": (190, 6.0), "heat_chebyshev": (120, 4.0), "heat_step": (100, 3.0), "heat_implicit": (120, 4.0)}  # of the large ones
+MET = {  # of the large ones
+    "advance": (190, 6.0), "heat_chebyshev": (120, 4.0), "heat_step": (100, 3.0), "heat_implicit": (120, 4.0), "advance_touching": (250, 9.0),
+}  # fmt: skip
 KERNELS = {"at rest": 8, "moving": 12}  # that a scene takes, where this machine has met none of its sort
 LINKING = 0.3  # of a kernel's time, after its last function: linking, optimising, machine code
 MOVING, RESTING = 1.5, 3.0  # seconds of the small kernels of bodies that move, and of those of all that rests
@@ -167,5 +169,11 @@ def expected(experiment: Any) -> float:
     if not experiment.moving:
         return RESTING
     here = met()
-    step, heat = (here.get(name, MET[name])[1] for name in ("advance", "heat_chebyshev"))
-    return MOVING + step + heat * any(material.heat is not None for material in experiment.materials.values())
+    step, heat, touching = (here.get(name, MET[name])[1] for name in ("advance", "heat_chebyshev", "advance_touching"))
+    warm = any(material.heat is not None for material in experiment.materials.values())
+    return MOVING + step + heat * warm + touching * meets(experiment)
+
+
+def meets(experiment: Any) -> bool:
+    """Whether a config names what its bodies may touch. That they reach a wall that it does not name is not foreseen."""
+    return len(experiment.bodies) > 1 or bool(experiment.tools) or any(wall.kind == "contact" for wall in experiment.walls.values())

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mpm import linking
+import mpm
+from mpm import compiling, linking
 
 ROOT = Path(__file__).parent.parent
 SCENE = {
@@ -74,6 +75,17 @@ def test_from_the_cache_nothing_is_compiled_and_all_bits_are_the_same(cold):
     cache, first = cold
     again = run(cache)
     assert again["series"] == first["series"] and again["seconds"] == 0.0 and again["said"] == []
+
+
+def test_what_has_to_be_compiled_is_foreseen(tmp_path, monkeypatch):
+    """Heat and contacts that the config names take seconds more; none once the kernels are there, whatever its numbers."""
+    monkeypatch.setattr(compiling, "folder", lambda: tmp_path)
+    bare = {"walls": {"left": "contact"}, **SCENE, "materials": {"m": {name: SCENE["materials"]["m"][name] for name in ("density", "elastic")}}, "surfaces": []}
+    plain, touching, warm = (compiling.expected(mpm.load(data)) for data in (bare | {"walls": {"left": "slip"}}, bare, SCENE))
+    assert 3.0 < plain < min(touching, warm)
+    monkeypatch.setattr(compiling.spent, "remembered", False)
+    compiling.remember(mpm.load(SCENE), again=False)
+    assert compiling.expected(mpm.load(SCENE | {"time": {"end": 0.3}})) == 0.0 < compiling.expected(mpm.load(bare))
 
 
 THREADS = """

@@ -9,6 +9,8 @@ import mpm
 from mpm.config import ConfigError
 from mpm.state import GridHeating, Heating
 
+pytestmark = pytest.mark.plain
+
 GAMMA, ALPHA, THETA = 9e-8, 1.5e-7, 2.0
 EXPONENT = GAMMA / (2.0 * ALPHA)
 

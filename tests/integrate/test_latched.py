@@ -7,6 +7,8 @@ import mpm
 from mpm.config import ConfigError
 from mpm.state import Expansion
 
+pytestmark = pytest.mark.plain
+
 LATCHED = {"latched": {"gamma": 0.02, "reference": 400.0, "set": 410.0}}
 REVERSIBLE = {"modulus": {"gamma": 0.02, "reference": 400.0}}
 SWOLLEN = np.exp(0.02 * 10 / 7.0)  # uniaxial: ln J = gamma (set - reference)/(lam + 2 mu)
