@@ -24,7 +24,8 @@ VALUES = {
     "bump": ("base", "heat"),
     "logistic": ("low", "high"),
     "arrhenius": ("k0",),
-}  # fields of a law of temperature
+    "set": ("raw", "baked"),
+}  # fields of a law of temperature; of what sets, laws
 MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
 RATES = {"table": ("value",), "sine": ("mean", "amplitude")}  # its values
 EXCHANGE = {  # the field that is a rate, and the field of the temperature outside
@@ -49,9 +50,10 @@ def changed(model, factor: float, *names: str):
 
 def law_times(law, factor: float):
     """A law of temperature or setting whose values are multiplied."""
+    names = VALUES[type(law).kind]
     if type(law).kind == "set":
-        return law.model_copy(update={name: law_times(getattr(law, name), factor) for name in ("raw", "baked")})
-    return changed(law, factor, *VALUES[type(law).kind])
+        return law.model_copy(update={name: law_times(getattr(law, name), factor) for name in names})
+    return changed(law, factor, *names)
 
 
 def sooner(programme, S: float):
