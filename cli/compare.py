@@ -7,12 +7,14 @@ import typer
 from mpm_cli.options import Json
 from mpm_cli.talk import document, say
 
-Place = Annotated[Path, typer.Argument(help="Dataset file, or the folder that holds it.", show_default=False)]
+PLACE = "Dataset file, or the folder that holds it."
+One = Annotated[Path, typer.Argument(metavar="A", help=PLACE, show_default=False)]
+Other = Annotated[Path, typer.Argument(metavar="B", help=PLACE, show_default=False)]
 
 
 def compare(
-    a: Place,
-    b: Place,
+    a: One,
+    b: Other,
     rtol: Annotated[float, typer.Option(min=0, help="Relative tolerance.")] = 0.0,
     atol: Annotated[float, typer.Option(min=0, help="Absolute tolerance.")] = 0.0,
     as_json: Json = False,

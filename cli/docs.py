@@ -6,7 +6,7 @@ import typer
 from mpm_cli.options import Json
 from mpm_cli.talk import document, say
 
-Page = Annotated[str | None, typer.Argument(metavar="[PAGE]", help="Name of a page to print, as Markdown.", show_default=False)]
+Page = Annotated[str | None, typer.Argument(metavar="PAGE", help="Name of a page to print, as Markdown.", show_default=False)]
 
 
 def docs(page: Page = None, as_json: Json = False) -> None:

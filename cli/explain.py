@@ -13,7 +13,7 @@ Word = Annotated[list[str], typer.Argument(metavar="WORD...", help=WORD, show_de
 def explain(word: Word, as_json: Json = False) -> None:
     """Print what a word means.
 
-    Looks in the same entries of which the reference pages of the docs are made. A word that nothing is called is answered with the nearest ones.
+    The entries are those of the reference pages of the docs. An unknown word is answered with the nearest ones.
     Exit codes: 0 found; 2 not found.
     """
     from dataclasses import asdict

@@ -26,5 +26,5 @@ def flag(command: str, option: Any, context: Any) -> Any:
 
     kind = "flag" if option.param_type_name == "option" else "argument"
     spoken, said = option.get_help_record(context)
-    spoken = re.sub(r" <\w+>$", "", spoken)  # some versions of typer add the type of an argument
+    spoken = re.sub(r" <[^>]+>$", "", spoken) if kind == "argument" else spoken  # some versions of typer add its type
     return Entry(f"{command} {spoken}", kind, said, {"names": " ".join(option.opts) if kind == "flag" else ""})

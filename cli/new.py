@@ -10,7 +10,7 @@ from mpm_cli.talk import document, say
 MENU = "Name of a shipped scene, or bare. Without a name: list the scenes."
 INTO = "Folder to write to.  [default: the current folder]"
 PARTS = "Physics of a bare config: some of heat, elastic, flow, expansion, with commas between.  [default: heat]"
-Scene = Annotated[str | None, typer.Argument(metavar="[SCENE]", help=MENU, show_default=False)]
+Scene = Annotated[str | None, typer.Argument(metavar="SCENE", help=MENU, show_default=False)]
 Into = Annotated[Path | None, typer.Option("-o", "--out", metavar="DIR", parser=folder, help=INTO, show_default=False)]
 Dimension = Annotated[str | None, typer.Option(metavar="D", help="Dimension of a bare config: 0, 1, 2, axisymmetric or 3.  [default: 1]", show_default=False)]
 Physics = Annotated[str | None, typer.Option(metavar="P,...", help=PARTS, show_default=False)]
