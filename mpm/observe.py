@@ -270,6 +270,8 @@ class Recorder:
         finals["steps"] = float(clock.steps or clock.heat_steps)
         if scene.implicit is not None:
             finals |= scene.implicit.finals(clock.told)
+        if clock.longest > 0:
+            finals |= {"step_shortest": clock.shortest, "step_longest": clock.longest}
         run = Run(result, np.array(self.times), series, finals, steps=clock.steps, wall_time=wall_time, facts=facts)
         if len(times := self.frames.times):
             held, run.snapshot_times = self.frames.held, times

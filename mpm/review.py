@@ -7,6 +7,7 @@ energy    energy of motion that no law accounts for is more than ENERGY of what 
           loses 15 % at one of its points with `transfer: apic`, 10 % with affine FLIP, and spreads 0.109 and 0.123 mm
 thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
+step      steps are shorter than `time.step` says by more than SHORTER, cut to end at output times or at heat steps
 edge      material comes within a cell of a side of the domain that `walls` does not name: a wall without friction stands there
 Cost      a few microseconds a point: series are looked at once, at the end.
 """
@@ -24,7 +25,7 @@ from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
 
-VOLUME, HEAT, ENERGY, THIN = 0.1, 0.01, 0.1, 2.0
+VOLUME, HEAT, ENERGY, THIN, SHORTER = 0.1, 0.01, 0.1, 2.0, 0.01
 SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
 
 
@@ -150,4 +151,10 @@ def edge(experiment: Any, run: Run) -> Iterator[str]:
                 yield f"material is within a cell of the side {side} from t = {run.times[near[0]]:.4g} s on, where the domain ends with a wall without friction"
 
 
-LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "edge": edge}
+def step(experiment: Any, run: Run) -> Iterator[str]:
+    wanted, taken = experiment.time.step, run.finals.get("step_longest")
+    if isinstance(wanted, float) and taken is not None and taken < wanted * (1 - SHORTER):
+        yield f"time.step is {wanted:.4g} s, and steps of at most {taken:.4g} s were taken, so that they end at output times and heat steps"
+
+
+LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step}

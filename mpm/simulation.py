@@ -85,7 +85,7 @@ class Clock:
         self.time, self.steps, self.heat_steps, self.implicit, self.iterations = 0.0, 0, 0, 0, 0  # implicit: heat steps, and their solver's iterations
         self.bound, self.told = {}, {}  # steps by what bound them; what implicit mechanics counts
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
-        self.swell, self.spent, self.first_step = 1.0, 0.0, None  # largest J; wall time before the run was cut [s]
+        self.swell, self.spent, self.first_step, self.shortest, self.longest = 1.0, 0.0, None, math.inf, 0.0  # largest J; time before a cut; steps [s]
         self.lag, self.touching = 0.0, False  # how far velocities lie behind positions [s] (contact/insync.py); whether the last block looked for contacts
         self.seen = np.tile([math.inf, -math.inf], (len(scene.bodies), 1))  # lowest and highest temperature of body and surroundings so far
         self.stepped = self.heated = None  # (step, its limit [s], the limit's name) of the last mechanical step and of the last heat sub-step
@@ -107,7 +107,8 @@ class Clock:
         self.reports[:, PARTICLE] = -1
 
     def gather(self, dt: float) -> None:
-        """After a block: rates from increments, and the heat, dissipation and work of its steps."""
+        """After a block of steps of dt: rates from increments, and the sums of its steps."""
+        self.shortest, self.longest = min(self.shortest, dt), max(self.longest, dt)
         self.reports[:, RATE] /= dt
         for name, place in GATHERED.items():
             setattr(self, name, getattr(self, name) + float(np.sum(self.reports[:, place])))
@@ -214,8 +215,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)
-        taken = (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)
-        if taken is not None and not taken.ok:
+        if (taken := (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)) is not None and not taken.ok:
             return taken
         clock.gather(dt)
         failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)

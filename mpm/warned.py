@@ -16,6 +16,7 @@ KINDS = {
     "thin": "smaller cells",
     "probe": "put the probe where material stays",
     "edge": "enlarge `grid.size`, or say under `walls` what stands there",
+    "step": "a `time.step` of which `output.every`, snapshots and heat steps are whole numbers",
 }
 
 

@@ -32,6 +32,7 @@ PAIRS = {  # kind: (raises it, does not)
     "energy": ({"lower": 0.5, "upper": 1.25, "speed": -0.8, "time": {"end": 6.0}}, {"lower": 0.5, "upper": 1.25, "speed": 0.8, "time": {"end": 6.0}}),
     "thin": ({"lower": 1.0, "upper": 1.3}, {"lower": 1.0, "upper": 1.6}),
     "edge": ({"lower": 5.0, "upper": 6.7, "speed": 0.1}, {"lower": 5.0, "upper": 6.7, "speed": 0.1, "walls": ("left", "right")}),
+    "step": ({"time": {"end": 2.0, "step": 0.015}, "output": {"every": 0.02}}, {"time": {"end": 2.0, "step": 0.01}, "output": {"every": 0.02}}),
 }
 
 

@@ -22,6 +22,7 @@ Further files
     model             which model answers the config
     parameters        named parameters
     programmes        temperatures over time
+    rules_chart       rules of `chart:`
     rules_fit         rules for named parameters and for what is fitted
     rules_frame       rules of `method.frame`
     rules_mechanics   rules of `method.mechanics`

@@ -22,8 +22,12 @@ class Chart(Model):
     """Error against time over methods and resolutions."""
 
     error: tuple[str, ...] = doc((), description="finals that are the error, the largest counts: error_l2, ...; the exact solution says, unless given")
-    scale: Positive | None = doc(None, description="what counts as 100 % of an error in kelvin or metres; the range of temperatures of the run unless given")
-    observables: tuple[str, ...] = doc((), description="without `exact`: finals that are compared with their limit by Richardson extrapolation")
+    scale: Positive | None = doc(
+        None, description="what counts as 100 % of an error or of the observables; the range of temperatures, the largest change of what moves unless given"
+    )
+    observables: tuple[str, ...] = doc(
+        (), description="without `exact`: observables that are compared with their limit by Richardson extrapolation; all of output unless given"
+    )
     reference: str | None = doc(None, description="the method whose finest settings give that limit; the first unless given")
     repeats: Annotated[int, Whole("rounds", 1, 1000)] = doc(5, description="rounds of timing; five or more for a figure")
     methods: dict[str, Line] = doc({}, description="methods by name; by the physics of the config unless given")

@@ -7,6 +7,7 @@ To add a rule: write it, list it in `RULES` with the items it is for.
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from mpm.config import rules_chart as charting
 from mpm.config import rules_fit as fitting
 from mpm.config import rules_frame as framing
 from mpm.config import rules_mechanics as steps
@@ -111,6 +112,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (point.clock, once),
     (point.output, once),
     (point.heating, each("materials")),
+    (charting.chart, once),
     (fitting.fit, once),
     (fitting.refine, once),
     (framing.frame, once),

@@ -110,10 +110,10 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
         return True
 
 
-def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool) -> Iterator[Finding]:
+def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, path: tuple = ()) -> Iterator[Finding]:
     from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, threshold
 
-    path = ("output", "observables", index)
+    path = path or ("output", "observables", index)
     if not observable_exists(name):
         dimension = experiment.grid.dimension
         allowed = [word for word in OBSERVABLES if dimension is MISSING or fits(word, dimension)] + [

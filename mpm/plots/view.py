@@ -13,7 +13,8 @@ from mpm.text import visible
 from mpm.warned import counted
 
 __all__ = ["BOOKKEEPING", "LOG_RATIO", "Axis", "View", "spread", "tally"]
-BOOKKEEPING = ("status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "wall_time", "attempts")
+BOOKKEEPING = ("status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "step_shortest", "step_longest", "wall_time",
+               "attempts")  # fmt: skip
 
 
 def tally(reasons: np.ndarray) -> dict[str, int]:

@@ -117,6 +117,8 @@ TABLE = [
     ("newton_shifts", "", "1", POINT, "implicit mechanics: matrices that were not positive and got a share of their diagonal"),
     ("wall_depth", "", "m", POINT, "implicit mechanics: how deep a piece of surface was in a contact wall, at most"),
     ("kinetic_over_work", "", "1", POINT, "implicit mechanics: kinetic energy of the last step over the work of gravity and loads so far"),
+    ("step_shortest", "", "s", POINT, "shortest time step that bodies moved by"),
+    ("step_longest", "", "s", POINT, "longest time step that bodies moved by"),
     ("wall_time", "", "s", POINT, "wall time of the run"),
     ("attempts", "", "1", POINT, "times the point was started"),
     # coordinates

@@ -9,6 +9,7 @@ physics.py    rigid (heat without motion), no flow, one way (no heating by defor
 dimension.py  axisymmetric for a round body, fewer directions for a slab or a bar
 moving.py     the same for bodies that move
 lumped.py     one temperature (dimension 0)
+change.py     how much a quantity changes in a run: what errors are a share of
 difference.py        how far two runs lie apart in what was asked for; pilots
 choose.py     which of them a tolerance allows; `model: auto`
 To add    a function in one of these, listed in choose.MENU; tests/reduce ranges over the menu

@@ -2,7 +2,7 @@
 
 Temperatures   the largest difference over time, as a share of the scene's driving difference
 Times to reach relative to the time itself; reached in one run alone is infinitely far apart
-All else       the largest difference over time, relative to how much the quantity changes in the full run, at least to a thousandth of its size
+All else       the largest difference over time, relative to how much the quantity changes in the full run (mpm.reduce.change)
 """
 
 import math
@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from mpm.reduce.change import size
 from mpm.reduce.offers import Asked, Offer, asked, bare, crossing, driving
 
 COARSER = (2, 3, 4)  # a pilot's cell over the config's
-STEADY = 1e-3
 CAUTION = 1.5  # a pilot's difference is multiplied by it
 
 
@@ -35,13 +35,7 @@ def apart(full: Any, small: Any, name: str, span: float) -> float:
     a, b = full.series[name], small.series.get(name)
     if b is None or len(b) != len(a):
         return math.inf
-    most = float(np.max(np.abs(a - b)))
-    scale = float(np.ptp(a))
-    if name.startswith("temperature_"):
-        scale = span or scale
-    else:
-        scale = max(scale, STEADY * float(np.max(np.abs(a))))
-    return 0.0 if most == 0 else most / scale if scale > 0 else math.inf
+    return float(np.max(np.abs(a - b))) / size(name, full.series, float(a[-1]), span)
 
 
 def shifts(run: Any, experiment: Any, error: float, span: float) -> dict[str, float]:

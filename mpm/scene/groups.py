@@ -7,7 +7,8 @@ elastic heating Gamma Theta tr(eps)/span               how much deformation heat
 swelling        gamma span/(3 K)                       thermal strain: how far heat moves the body
 Deborah         eta/(3 mu t), eta p0^2/(K t)           relaxation time over the run: small, rate-independent; large, elastic
 Courant         c dt/h                                 the elastic wave's way in a step
-gravity         R0 g H/E and R0 g H/M                  against stiffness (strain) and against yield (whether it flows)
+gravity         R0 g H/E and R0 g H/M                  against stiffness (strain; where it bends, that at its clamp) and against yield (whether it flows).
+                                                       Offered to be dropped where something bears it, the strain is small, and something else moves the body
 impact          v/c                                    strain of a body that is stopped
 Froude          (S v)^2/(g H)                          inertia that time scaling lets in
 `error` is the group's own estimate of what dropping its term would change: of temperatures as a share of the driving difference, of motion as a strain.
@@ -93,7 +94,7 @@ def strains(experiment, one: Scales) -> dict[str, float]:
     """Upper estimates of strain by cause: gravity and tractions put on at once, a stop from the starting speed, thermal expansion."""
     g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
     return {
-        "gravity": 2 * one.density * g * one.height / one.softest,
+        "gravity": 2 * one.density * g * one.height / one.softest * one.lever,
         "impact": one.speed / math.sqrt(one.softest / one.density),
         "swelling": one.swelling,
         "traction": 2 * one.traction / one.softest,
@@ -109,11 +110,16 @@ def motion(experiment, one: Scales) -> list[Group]:
     if weight > 0:
         sag = weight / one.softest
         said = grade(10 * sag, "it carries its weight without sagging", "it sags visibly", "it collapses under its weight unless its shape holds it")
-        found.append(Group("gravity/stiffness", "R0gH/E", sag, "R0 g H/E", said, one.name, "gravity" if sag < 1e-3 else "", 2 * sag))
+        bent = sag * one.lever
+        if one.held == "bends":
+            said = f"it bends: strain {bent:.2g} where it is held, " + grade(10 * bent, "hardly to be seen", "to be seen", "far")
+        alone = not (one.speed or one.traction or one.gamma or experiment.tools)  # then gravity is all that moves it
+        drop = "gravity" if one.held and bent < 1e-3 and not alone else ""
+        found.append(Group("gravity/stiffness", "R0gH/E", sag, "R0 g H/E", said, one.name, drop, 2 * bent))
     if one.M is not None and weight > 0:
         ratio = weight / one.M[0]
-        said = "it stands without flowing" if 2 * ratio < 1 else "it may flow under its weight" if ratio < LARGE else "it flows like a liquid"
-        drop = "flow" if 2 * ratio < 1 and all(stress < 1 for stress in loads(experiment, one)) else ""
+        said = "it stands without flowing" if 2 * ratio * one.lever < 1 else "it may flow under its weight" if ratio < LARGE else "it flows like a liquid"
+        drop = "flow" if 2 * ratio * one.lever < 1 and all(stress < 1 for stress in loads(experiment, one)) else ""
         found.append(Group("gravity/yield", "R0gH/M", ratio, "R0 g H/M", said, one.name, drop, 0.0 if drop else None))
     if one.speed > 0:
         mach = one.speed / one.wave
@@ -134,7 +140,7 @@ def motion(experiment, one: Scales) -> list[Group]:
 def loads(experiment, one: Scales) -> tuple[float, float]:
     """Upper estimates of the stress over the yield stress: of shear over M, of pressure over p0 M. Weight and tractions act at once."""
     g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
-    stress = 2 * one.density * g * one.height + 2 * one.traction + one.density * one.wave * one.speed + one.thermal_stress
+    stress = 2 * one.density * g * one.height * one.lever + 2 * one.traction + one.density * one.wave * one.speed + one.thermal_stress
     return 2 * stress / one.M[0], 2 * stress / (one.M[0] * one.p0[0])
 
 

@@ -13,12 +13,14 @@ from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.programmes import bounds
 from mpm.materials import HenckyWarm, value
 from mpm.materials.porous import aspect
+from mpm.scene.conventions import SIDES
 from mpm.scene.exchange import most, programme, rates, robin
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
 
 LATTICE = 4  # cells a direction of the quadrature that measures a body
+FLUSH = 1e-9  # of the domain: what is nearer to a side lies on it
 SAMPLES = 65  # temperatures at which a law is looked at
 
 
@@ -42,6 +44,8 @@ class Scales:
     volume: float  # [m3], of one metre or square metre where the scene has fewer directions
     surface: float  # all of it [m2]
     extent: tuple[float, ...]  # [m]
+    held: str  # what bears its weight: `stands` on a side of the domain, `bends` from sides that hold it, or nothing
+    lever: float  # strain under its weight over that of a column: 1, or by bending more
     reach: float  # largest distance of the inside from the exchanging surface [m]
     height: float  # extent along gravity, the largest without gravity [m]
     speed: float  # of the start [m/s]
@@ -155,6 +159,30 @@ def lattice(outline) -> np.ndarray:
     return points[outline.distance(points) < 0]
 
 
+def bearing(experiment, name: str) -> tuple[str, float]:
+    """What bears the weight of a body, and the strain at its clamp over R0 g H/E, H its extent along gravity: by beam theory at small deflection
+
+    3 (L/H)^2 of a cantilever, (L/H)^2/2 of a beam held at both ends, 3 (L/H)^2/4 of a round plate held at its rim, L the extent (radius) across.
+    """
+    grid, gravity = experiment.grid, experiment.gravity
+    if gravity is None or not any(gravity) or grid.dimension == 0:
+        return "", 1.0
+    lower, upper = shape(experiment.bodies[name].shape, grid.dimension).bounds()
+    down, found = int(np.argmax(np.abs(gravity))), 0.0
+    for axis, size in enumerate(grid.size):
+        ends = [abs(lower[axis]) <= FLUSH * size, abs(upper[axis] - size) <= FLUSH * size]
+        if axis == down:
+            if ends[1 if gravity[down] > 0 else 0]:
+                return "stands", 1.0
+            continue
+        walls = [experiment.walls.get(side) for side in SIDES[grid.dimension][2 * axis : 2 * axis + 2]]
+        clamps = sum(touch and wall is not None and wall.kind == "stick" for touch, wall in zip(ends, walls, strict=True))
+        factor = 0.75 if grid.dimension == "axisymmetric" else {1: 3.0, 2: 0.5}.get(clamps, 0.0)
+        slender = factor * ((upper[axis] - max(lower[axis], 0.0)) / (upper[down] - lower[down])) ** 2 if clamps else 0.0
+        found = slender if not found else min(found, slender or found)  # the shorter span bears it
+    return ("bends", max(1.0, float(found))) if found else ("", 1.0)
+
+
 def of_body(experiment, name: str) -> Scales:
     """Scales of one body."""
     body, zero = experiment.bodies[name], experiment.grid.dimension == 0
@@ -176,7 +204,7 @@ def of_body(experiment, name: str) -> Scales:
     speed += (math.hypot(*spin) if isinstance(spin, tuple) else abs(spin or 0.0)) * math.hypot(*extent) / 2
     pull = sum(math.hypot(*entry.traction.nominal) for entry in experiment.loads if entry.of == name and entry.traction is not None)
     found = laws(material, max(low, 1.0), high) | {"traction": pull}
-    return Scales(name, volume, surface, extent, reach, height, speed, low, high, material.density, exchanges, **found)
+    return Scales(name, volume, surface, extent, *bearing(experiment, name), reach, height, speed, low, high, material.density, exchanges, **found)
 
 
 def shaped(experiment, name: str, high: float):

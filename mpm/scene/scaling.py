@@ -158,7 +158,7 @@ def physical(run: Run, experiment) -> Run:
         if name.startswith(("velocity_", "momentum_")):
             run.series[name] = run.series[name] / S
     run.finals |= {name: float(values[-1]) for name, values in run.series.items()}
-    run.finals |= {name: value * S for name, value in run.finals.items() if name.startswith("time_to_")}
+    run.finals |= {name: value * S for name, value in run.finals.items() if name.startswith(("time_to_", "step_"))}
     run.finals |= {f"scaling_{name}": value for name, value in found.items()}
     past = [f"{what} {found[key]:.2g} above {most:g}" for key, what, most in (("froude", "Froude number", FROUDE), ("kinetic", "kinetic share", KINETIC))
             if found.get(key, 0.0) > most]  # fmt: skip

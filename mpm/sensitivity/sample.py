@@ -10,7 +10,8 @@ import numpy as np
 from mpm.records.variables import OK, SKIPPED, threshold
 from mpm.sweep.lock import Refused
 
-OWN = {"status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "wall_time", "attempts", "model_name"}
+OWN = {"status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "step_shortest", "step_longest", "wall_time", "attempts",
+       "model_name"}  # fmt: skip
 
 
 @dataclass

@@ -4,8 +4,9 @@
     chart(experiment, out, ...) -> Charted   the settings as a sweep (OUT/sweep.nc: errors, outcomes), then rounds of timing, then OUT/chart.nc
 Both halves go on where they were interrupted. A setting that fails is a point without an error, with its reason.
 
-Error   of the finals that `chart.error` names, the largest. Relative ones as they are; those in kelvin (metres, ...) over `chart.scale`, unless given the
-        range of temperatures in the most accurate run. Without `exact`: of `chart.observables` against their limit (study/richardson.py), with its own error.
+Error   of the finals that `chart.error` names, the largest. Relative ones as they are; others over `chart.scale`, those in kelvin unless given over the
+        range of temperatures in the most accurate run. Without `exact`: of `chart.observables` against their limit (study/richardson.py), with its own error,
+        over `chart.scale` or how much each changes in the run (mpm.reduce.change): positions are measured as displacements.
 Time    the smallest of the rounds' processor times of a run, set-up included, without the comparison with the exact solution (study/timing.py)
 """
 
@@ -19,6 +20,7 @@ import numpy as np
 from mpm.records.netcdf import Array, Group, seal, to_bytes, write_whole
 from mpm.records.provenance import git_revision, machine, versions
 from mpm.records.variables import OK
+from mpm.reduce.change import spread
 from mpm.study.front import TOLERANCES, cheapest, pareto, sentence
 from mpm.study.timing import Timings, compiled, timed
 from mpm.sweep.report import Reporter
@@ -177,9 +179,10 @@ def errors(experiment: Any, tree: Any) -> tuple[np.ndarray, np.ndarray | None, s
     """(relative error, largest relative error or None, what it is) of every setting."""
     root, wanted = tree.to_dataset(), experiment.chart.error
     if not wanted and experiment.exact is None:
-        from mpm.study.richardson import against_limit
+        from mpm.study.richardson import against_limit, observed
 
-        return against_limit(experiment, root, scale_of(experiment, tree))[0], None, "error against the limit by Richardson extrapolation"
+        over = "how much each changes in the run" if experiment.chart.scale is None else f"{experiment.chart.scale:.4g}"
+        return against_limit(experiment, tree)[0], None, f"error of {', '.join(observed(experiment))} against the Richardson limit, over {over}"
     wanted = wanted_errors(experiment, root.data_vars)
     scale = 1.0 if all(key in RELATIVE for key in wanted) else scale_of(experiment, tree)
     ok = root.status.values == OK
@@ -221,8 +224,7 @@ def scale_of(experiment: Any, tree: Any) -> float:
     if "temperature_max" not in series:
         return 1.0
     row = int(np.nanargmin(root["error_l2"].values)) if "error_l2" in root and np.isfinite(root["error_l2"].values).any() else -1
-    spread = np.nanmax(series["temperature_max"].values[row]) - np.nanmin(series["temperature_min"].values[row])
-    return float(spread) if spread > 0 else 1.0
+    return spread({name: series[name].values[row] for name in ("temperature_min", "temperature_max")}) or 1.0
 
 
 def reference_error(experiment: Any, tree: Any) -> float:
@@ -231,4 +233,4 @@ def reference_error(experiment: Any, tree: Any) -> float:
         return 0.0
     from mpm.study.richardson import against_limit
 
-    return against_limit(experiment, tree.to_dataset(), scale_of(experiment, tree))[1]
+    return against_limit(experiment, tree)[1]

@@ -7,7 +7,8 @@ more, and the cell which that asks for, n* = n (e/(MARGIN tol))^(1/p), is farthe
 known error has fallen by the same p twice, it is SURE in place of MARGIN, and a cell coarser than the next pilot's is taken at once.
 No pilot starts that would end, by the time of the last one, more than MOST_SECONDS after the first of any method began.
 Error     as `mpm chart` has it: against `exact:`; without one, of the observables that the config lists (probes, time_to, ...) by how they change between
-          pilots: |f - f_k|/((h_k/h)^p - 1), the larger for the two before; p = 1, or up to 2 where two estimates of it agree, and SAFETY times that
+          pilots: |f - f_k|/((h_k/h)^p - 1), the larger for the two before; p = 1, less where three pilots say so, or up to 2 where two estimates of it
+          agree, and SAFETY times that. 100 % is `chart.scale`, else how much each changes in the run (mpm.reduce.change)
           (cells that bodies cut make a change small by chance: the loaf's time to 95 degC at 2.9 mm lies 0.3 % from that at 4.4 mm, and 2.8 % from its limit)
 Cost      the last pilot's time, times the ratio that `mpm.runner.estimate` gives between the two
 Fails when: the scene has an error that no cell removes (a smooth approximation, a sharp latent front); the pilots then do not fall, and the choice says so.
@@ -22,8 +23,8 @@ from typing import Any
 import numpy as np
 
 from mpm.config.vary import label
-from mpm.reduce.difference import STEADY
-from mpm.study.richardson import SAFETY
+from mpm.reduce.change import size, spread
+from mpm.study.richardson import SAFETY, observed
 from mpm.study.richardson import order as fitted
 
 MARGIN, SURE, REACH, PILOT = 0.7, 0.9, 6.0, 1.5
@@ -224,30 +225,20 @@ class Gauge:
         """Against the exact solution; else by the pilots before, of which the cell is then needed."""
         from mpm.study.chart import RELATIVE, wanted_errors
 
-        series = run.series
-        spread = float(np.max(series["temperature_max"]) - np.min(series["temperature_min"])) if "temperature_max" in series else 1.0
-        chart = self.experiment.chart
-        scale = chart.scale if chart is not None and chart.scale is not None else spread or 1.0
+        given = self.experiment.chart.scale if self.experiment.chart is not None else None
         if self.experiment.exact is not None:
-            names = wanted_errors(self.experiment, run.finals)
+            names, scale = wanted_errors(self.experiment, run.finals), given or spread(run.series) or 1.0
             return max(abs(run.finals[name]) / (1.0 if name in RELATIVE else scale) for name in names)
-        found = {name: run.finals[name] for name in observed(self.experiment, run.finals) if math.isfinite(run.finals[name])}
+        found = {name: run.finals[name] for name in told_of(self.experiment, run.finals) if math.isfinite(run.finals[name])}
         self.seen.append((cell, found))
         since = next((k for k in reversed(range(len(self.seen))) if set(self.seen[k][1]) != set(found)), -1) + 1
         alike = self.seen[since:]  # a time that only one of two reaches is infinitely far
         if not found or len(alike) < 2:
             return math.inf
         gaps = {name: left([h for h, _ in alike], [one[name] for _, one in alike]) for name in found}
-        shares = {name: gap / (scale if "temperature" in name else size(series.get(name), found[name])) for name, gap in gaps.items()}
+        shares = {name: gap / (size(name, run.series, found[name]) if given is None or name.startswith("time_to_") else given) for name, gap in gaps.items()}
         self.worst = max(shares, key=shares.get)
         return shares[self.worst]
-
-
-def size(series: np.ndarray | None, last: float) -> float:
-    """What counts as 100 % of a quantity: how much it changes in the run, at least STEADY of its size (mpm.reduce.difference); of a time, the time itself."""
-    if series is None or not np.isfinite(series).any():
-        return abs(last) or 1.0
-    return max(float(np.nanmax(series) - np.nanmin(series)), STEADY * float(np.nanmax(np.abs(series)))) or 1.0
 
 
 def left(cells: list[float], values: list[float]) -> float:
@@ -257,20 +248,18 @@ def left(cells: list[float], values: list[float]) -> float:
 
 
 def settled(cells: np.ndarray, values: np.ndarray) -> float:
-    """The order by which values approach their limit, between 1 and 2; 1 unless it is the same in the last two triples."""
+    """The order by which values approach their limit: below 1 as soon as the last three say so, above 1, up to 2, where the last two triples agree."""
     found = [fitted(cells[k : k + 3], values[k : k + 3]) for k in range(max(0, len(values) - 4), len(values) - 2)]
-    if len(found) < 2 or None in found or abs(found[0] - found[1]) > AGREE:
+    if not found or found[-1] is None:
         return 1.0
+    if found[-1] < 1 or None in found or len(found) < 2 or abs(found[0] - found[1]) > AGREE:
+        return min(1.0, found[-1])
     return min(2.0, max(1.0, min(found)))
 
 
-def observed(experiment: Any, finals: dict[str, float]) -> list[str]:
-    """The finals that a config cares about: what it lists under chart.observables, else its observables and probes."""
-    from mpm.records.variables import dataset_name
-
-    listed = experiment.chart.observables if experiment.chart is not None and experiment.chart.observables else ()
-    listed = listed or [dataset_name(name) for name in experiment.output.observables] + [f"temperature_{probe}" for probe in experiment.output.probes]
-    found = [name for name in listed if name in finals]
+def told_of(experiment: Any, finals: dict[str, float]) -> list[str]:
+    """Those of the finals that a config wants right."""
+    found = [name for name in observed(experiment) if name in finals]
     if not found:
         raise NoChoice("nothing to keep a tolerance of: name `exact:`, or observables or probes under `output:`")
     return found

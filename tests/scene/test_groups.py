@@ -63,6 +63,30 @@ def test_mechanical_groups_of_a_block():
     assert told["Courant"].value == pytest.approx(math.sqrt((lam + 2 * mu) / 1000) * 1e-3 / 0.25)
 
 
+@pytest.mark.parametrize(("lower", "upper", "walls", "lever"), [
+    ([0, 1], [2, 1.2], {"left": "stick"}, 3 * 10**2),
+    ([0, 1], [3, 1.2], {"left": "stick", "right": "stick"}, 15**2 / 2),
+    ([0, 0], [2, 0.2], {"left": "stick"}, 1),  # on the floor
+    ([0, 1], [2, 1.2], {"left": "slip"}, 1),  # held by nothing
+])  # fmt: skip
+def test_a_beam_bends_where_a_block_is_pressed(lower, upper, walls, lever):
+    """Strain at the clamp: M c/(E I), M = w L^2/2 of a cantilever and w L^2/12 of a beam held at both ends, I = H^3/12, w = R0 g H."""
+    light = {"density": 1e-2, "elastic": BLOCK["materials"]["m"]["elastic"]}
+    config = BLOCK | {"surfaces": [], "walls": walls, "materials": {"m": light}}
+    config["bodies"] = {"beam": {"shape": {"box": {"lower": lower, "upper": upper}}, "material": "m", "velocity": [0, -0.3]}}
+    one, told = scales(mpm.load(config))["beam"], found(config)["gravity/stiffness"]
+    assert one.lever == pytest.approx(lever)
+    assert told.error == pytest.approx(2 * lever * told.value)
+    bears = lever > 1 or lower[1] == 0
+    assert bool(told.drop) == (bears and lever * told.value < 1e-3) and ("bends" in told.meaning) == (lever > 1)
+
+
+def test_gravity_is_not_dropped_where_it_is_all_that_moves_a_body():
+    config = BLOCK | {"surfaces": [], "materials": {"m": {"density": 1e-3, "elastic": BLOCK["materials"]["m"]["elastic"]}}}
+    assert found(config)["gravity/stiffness"].drop == "gravity"
+    assert found(config, {"bodies.block.velocity": [0, 0]})["gravity/stiffness"].drop == ""
+
+
 def test_froude_of_time_scaling_grows_with_its_square():
     plain, scaled = (found(BLOCK, {"time.scale": scale})["Froude"].value for scale in (1, 10))
     assert scaled == pytest.approx(100 * plain)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray
+from beams import TIP, beam
 
 import mpm
 from mpm.study.chart import chart, with_chart
@@ -121,12 +122,72 @@ def test_a_limit_stands_in_where_nothing_is_exact(tmp_path):
         np.testing.assert_allclose(data.relative_error.values, true, atol=2 * own)
 
 
+def test_a_deflection_is_measured_by_itself_wherever_the_beam_lies(tmp_path):
+    """Of `position.mean_y`, 0.5 m less 0.4 mm: the chart's errors are those of the deflection, as finite elements see them, not of 0.5 m."""
+    wanted = {"observables": ["position.mean_y"], "repeats": 1, "methods": {"total": {}}, "refine": {"cell": {"grid.cell": [0.1, 0.05, 0.04]}}}
+    chart(beam(chart=wanted), tmp_path, Options(jobs=0), cold=False)
+    tips = np.array([mpm.run_point(beam(**{"grid.cell": cell})).finals["displacement_tip_y"] for cell in (0.1, 0.05)])
+    with xarray.open_dataset(tmp_path / "chart.nc", engine="h5netcdf") as data:
+        own = float(data.relative_error.attrs["reference_error"])
+        np.testing.assert_allclose(data.relative_error.values[:2], np.abs(tips / TIP - 1), atol=max(own, 4e-3))
+        assert data.relative_error.values[0] > 0.015
+
+
+def test_what_counts_as_all_of_a_quantity():
+    """The largest change of what moves, along any direction and from any origin; the range of temperatures; else the range, at least a thousandth."""
+    from mpm.reduce.change import size
+
+    t = np.linspace(0, 1, 11)
+    series = {"position_mean_x": 500 + 1e-4 * t, "position_mean_y": 0.5 - 0.02 * t, "temperature_min": 300 + 0 * t, "temperature_max": 300 + 7 * t,
+              "temperature_tip": 300 + t, "energy_total": 8 + 0 * t, "pressure_mean": 3 * t}  # fmt: skip
+    found = {name: size(name, series, series[name][-1]) for name in series}
+    assert found["position_mean_x"] == pytest.approx(0.02) == found["position_mean_y"]
+    assert found["temperature_tip"] == pytest.approx(7) and size("temperature_tip", series, 301, 40.0) == 40
+    assert found["energy_total"] == pytest.approx(8e-3) and found["pressure_mean"] == pytest.approx(3)
+    assert size("time_to_tip_300_5_K", series, 0.5) == 0.5
+
+
+def test_scale_acts_and_is_one_unit(tmp_path):
+    wanted = {"observables": ["position.mean_y"], "scale": 0.05, "repeats": 1, "methods": {"total": {}}, "refine": {"cell": {"grid.cell": [0.2, 0.1]}}}
+    chart(beam(chart=wanted), tmp_path, Options(jobs=0), cold=False)
+    with xarray.open_dataset(tmp_path / "chart.nc", engine="h5netcdf") as data:
+        ends = xarray.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf").position_mean_y.values
+        limit_of_two = ends[1] + (ends[1] - ends[0])
+        np.testing.assert_allclose(data.relative_error.values, np.abs(ends - limit_of_two) / 0.05, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("wrong", "said"), [
+    ({"observables": ["position.mean"]}, r"chart\.observables\.0: unknown observable"),
+    ({"observables": ["displacement.tip_x"]}, "it is not recorded"),
+    ({"observables": ["displacement.top_y"]}, "there is no probe 'top'"),
+    ({"observables": ["position.mean_z"]}, "no such direction"),
+    ({"error": ["error_displacement"]}, "no exact solution to err from"),
+    ({"error": ["error_placement"]}, "unknown error"),
+    ({"observables": ["position.mean_y", "energy.elastic"], "scale": 1}, "one number cannot be 100 %"),
+    ({"methods": {"a": {}}, "reference": "b"}, "no such method"),
+])  # fmt: skip
+def test_what_a_chart_compares_is_checked_before_anything_runs(wrong, said):
+    with pytest.raises(mpm.ConfigError, match=said):
+        beam(chart=wrong)
+
+
+def test_a_chart_without_anything_to_compare_is_refused():
+    tree = {key: value for key, value in SLAB.items() if key != "exact"}
+    with pytest.raises(mpm.ConfigError, match="nothing can be compared"):
+        with_chart(mpm.load(tree))
+    with pytest.raises(mpm.ConfigError, match=r"an error in Pa needs what counts as 100 %"):
+        mpm.load(SLAB | {"chart": {"error": ["error_stress_max"]}})
+
+
 def test_richardson_finds_limit_and_order():
     sizes = np.array([0.4, 0.2, 0.1])
     value, error = limit(sizes, 3 + 5 * sizes**2)
     assert value == pytest.approx(3, abs=1e-12) and error == pytest.approx(1.25 * 0.05)
     uneven = np.array([0.75, 0.5, 0.25])
     assert limit(uneven, 3 - 2 * uneven**3)[0] == pytest.approx(3, abs=1e-12)
+    value, error = limit(sizes, 3 + 5 * sizes**0.5)
+    assert value == pytest.approx(3, abs=1e-9)
+    assert limit(sizes, 3 + 5 * sizes**0.3)[1] == pytest.approx(1.25 * 5 * (0.2**0.3 - 0.1**0.3) / (2**0.5 - 1))  # slower: as if of order 0.5
     value, error = limit(sizes, np.array([1.0, 1.2, 1.1]))  # does not settle: the last change is the error
     assert error == pytest.approx(1.25 * 0.1)
     assert np.isnan(limit(sizes, np.array([np.nan, np.nan, 1.0]))[0])

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from beams import TIP, beam
 
 import mpm
 from mpm.study.choose import choose, numerical, offer, physics, rank, reach, told
@@ -97,6 +98,14 @@ def test_a_change_that_is_small_by_chance_is_not_taken_for_the_error():
     assert left(cells, smooth) == pytest.approx(1.25 * 5 * cells[-1] ** 2)
 
 
+def test_what_falls_slower_than_the_cell_is_believed_at_once():
+    """Three pilots of order 0.6: what is left is 1.9 times what order 1 would leave."""
+    cells = [0.4, 0.2, 0.1]
+    values = [1 + 0.3 * h**0.6 for h in cells]
+    assert settled(np.array(cells), np.array(values)) == pytest.approx(0.6, abs=1e-6)
+    assert left(cells, values) == pytest.approx(0.3 * 0.1**0.6, rel=1e-6)
+
+
 def test_an_order_that_holds_is_trusted_more():
     """Twice the same order of a known error: nine tenths of the tolerance are aimed at, else seven; estimated errors are never that sure."""
     from mpm.study.pilots import MARGIN, SURE, Pilot, goal, sure
@@ -150,3 +159,13 @@ def test_promises_are_kept_on_the_charted_problems(name):
         found = choose(experiment, tolerance)
         run = mpm.run_point(mpm.load(experiment.template(), found.settings))
         assert run.outcome.ok and Gauge(experiment, found.settings).error(run) <= tolerance, (tolerance, found)
+
+
+@pytest.mark.slow  # pilots of a cantilever
+@pytest.mark.parametrize("tolerance", [0.03, 0.01, 0.003])
+def test_the_promise_is_kept_where_a_beam_bends(tolerance):
+    """The tip's deflection by finite elements; `plan --tol` has only its pilots to go by."""
+    tree = beam(**{"method.frame": "updated"})
+    found = choose(tree, tolerance)
+    run = mpm.run_point(mpm.load(tree.template(), found.settings))
+    assert abs(run.finals["displacement_tip_y"] / TIP - 1) <= tolerance, found
