@@ -8,8 +8,10 @@ Fails when: a scene stiffens or speeds up, so that its steps are not those of it
 
 import math
 
+from mpm.config.rules_frame import named
 from mpm.config.rules_size import MOST_STEPS, MOST_UNKNOWNS
 from mpm.records.frames import SPILL
+from mpm.scene.framing import choice, in_likely_frame
 from mpm.scene.inventory import output_bytes, physics, ticks
 from mpm.scene.refusal import SceneError, placed
 
@@ -45,7 +47,17 @@ def estimate(experiment) -> dict:
         from mpm.scene import point
 
         return point.estimate(experiment)
-    return estimate_moving(experiment) if experiment.moving else estimate_rigid(experiment)
+    if not experiment.moving:
+        return estimate_rigid(experiment)
+    if experiment.method.frame != "auto":
+        return estimate_moving(experiment)
+    frame, why = choice(mechanics_settled(experiment))
+    try:
+        return estimate_moving(named(experiment, frame)) | {"frame": f"{frame}: {why}"}
+    except SceneError as error:
+        if frame == "updated":
+            raise
+        return estimate_moving(named(experiment, "updated")) | {"frame": f"updated: {error.message}"}
 
 
 def refuse_endless(experiment, step: float) -> None:
@@ -165,13 +177,13 @@ def estimate_moving(experiment) -> dict:
     But the fastest particle of a body that turns: it lies up to half a larger cell nearer to the axis.
     """
     from mpm.boundary import extents
-    from mpm.integrate.timestep import limits
     from mpm.scene.build import build
     from mpm.simulation import Clock
+    from mpm.total.drive import present_limits
 
     particles = count_particles(experiment)
     scene = build(experiment, most=math.inf if particles <= LOOKED else LOOKED)
-    now = limits(scene.space, experiment.grid.directions, scene.bodies, Clock(scene).reports)
+    now = present_limits(scene, Clock(scene))
     particles = sum(len(body.particles.m) for body in scene.bodies) if particles <= LOOKED else int(float(f"{particles:.3g}"))
     S = experiment.time.scale
     step = (scene.step or now.step() * scene.safety) * S
@@ -213,13 +225,19 @@ def by_mechanics(experiment, found: dict) -> dict:
 
 
 def settled(experiment):
+    """The experiment with explicit or implicit mechanics in place of `auto`, and in the frame that `method.frame: auto` begins with."""
+    if not experiment.moving or experiment.grid.dimension == 0:
+        return experiment
+    return in_likely_frame(mechanics_settled(experiment))
+
+
+def mechanics_settled(experiment):
     """The experiment with explicit or implicit mechanics in place of `auto`."""
     if experiment.method.mechanics != "auto":
         return experiment
-    from mpm.config.rules_mechanics import named
+    from mpm.config.rules_mechanics import named as in_steps
 
-    chosen = estimate_moving(experiment)["mechanics"].partition(":")[0] if experiment.moving and experiment.grid.dimension != 0 else "explicit"
-    return named(experiment, chosen)
+    return in_steps(experiment, estimate_moving(experiment)["mechanics"].partition(":")[0])
 
 
 def estimate_rigid(experiment) -> dict:

@@ -5,7 +5,8 @@ block     before it, temperatures: above absolute zero and, where nothing heats,
           NOISE) with `method.bounds: free`, and at all without; a warning from NOTICEABLE on: FLIP's noise beside a cold surface reaches 0.29, APIC's
           slopes 0.05
 frame     every output time: `whole`; no energy from nowhere (GROWTH of the largest so far, NOISY with affine FLIP); bodies in the pieces that they began
-          with (integrate/fragments.py)
+          with (integrate/fragments.py); in the total frame no body beyond a wall on which it did not lie. Where `method.frame: auto` chose that frame,
+          none within AWAY of such a wall, and none strained by more than MODERATE
 explain   after a failure: which field of which particle was first, and what to do: the step against the limits that held
 Cost      0.7 % of a run of 10 000 particles in 2-D whose heat steps cut blocks to 13 steps, with a frame every hundred (pytest -m slow tests/test_guards.py):
           the opening 12 us a block, temperatures 20 us, an output time 210 us
@@ -18,16 +19,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from mpm.boundary import extents
+from mpm.diagnostics import strains
 from mpm.integrate.fragments import STRETCH, torn
 from mpm.integrate.state_check import span, unsound
 from mpm.integrate.surroundings import Surroundings
 from mpm.materials import Hencky
-from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, Outcome, outcome
-from mpm.state import Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
+from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, OUTGROWN, Outcome, outcome
+from mpm.state import PAD, Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
 from mpm.transfer import Flip
 from mpm.warned import warning
 
 SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.005, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept
+MODERATE, AWAY, FLUSH = math.log(2.0), 1.0, 1e-9  # Hencky strain, elastic and plastic together; cells; of the domain
 GROWTH, NOISY = 0.05, 0.5  # of the largest energy so far; NOISY: affine FLIP keeps noise in velocities, and adds its slopes to it
 ROUNDED = 1e4  # round-offs: a strain below this is none, and its energy neither
 
@@ -97,7 +101,10 @@ class Guards:
         if self.judged and gained > self.growth * self.most and gained > 1e-12 * abs(self.begun) + self.least:
             said = f"(more than at the start by {100 * gained / self.most:.0f} % of the largest)"
             return outcome(ENERGY_GROWTH, time=clock.time * scene.scale, step=clock.steps, detail=said)
-        return self.gaps(scene, clock) if not scene.references else outcome(COMPLETED)
+        if scene.references:
+            said = outgrown(scene, series)
+            return outcome(OUTGROWN, time=clock.time * scene.scale, step=clock.steps, detail=f"({said})") if said else outcome(COMPLETED)
+        return self.gaps(scene, clock)
 
     def gaps(self, scene, clock) -> Outcome:
         """A body in more pieces than it began with: spacing over h. Over 2 h no force is left."""
@@ -123,6 +130,21 @@ def rounded(body) -> float:
     """Elastic energy of a body at a strain of ROUNDED round-offs [J]: a scene at rest has no other."""
     strain = ROUNDED * float(np.finfo(body.particles.V0.dtype).eps)
     return 0.5 * (body.elastic.lam + 2.0 * body.elastic.mu) * strain**2 * float(np.sum(body.particles.V0, dtype=float))
+def outgrown(scene, series) -> str:
+    """What the total frame does not know, where a body has come to it; empty where all is well."""
+    h, names = scene.space.h, [name.removeprefix("position_min_") for name in series if name.startswith("position_min_")]
+    for name, count in zip(names, extents(scene.space), strict=False):
+        size = (count - 1 - 2 * PAD) * h
+        room = h * (AWAY if scene.moderate < math.inf else -FLUSH)
+        for end in range(2):
+            gaps = [size - x if end else x for x in series[f"position_{'max' if end else 'min'}_{name}"]]
+            if gaps[0] > FLUSH * size and gaps[-1] < min(room, 0.5 * gaps[0]):
+                return f"it comes to the {'upper' if end else 'lower'} side of the domain along {name}, on which it did not lie"
+    if scene.moderate == math.inf:
+        return ""
+    flowed = [np.abs(strains(scene.space, reference.plastic)).max() for reference in scene.references if len(reference.plastic)]
+    strain = series["strain_max"][-1] + max(flowed, default=0.0)
+    return f"it is strained by {strain:.2g}, more than {scene.moderate:.2g}" if strain > scene.moderate else ""
 
 
 class Data:
@@ -176,7 +198,7 @@ class Data:
 
 def explain(found: Outcome, scene, clock) -> Outcome:
     """The outcome with advice from the step that was taken: which limit it passed, by how much, and what to change."""
-    if found.ok or found.kind in ("budget", "heat_solver"):
+    if found.ok or found.kind in ("budget", "heat_solver", "outgrown"):
         return found
     taken = {"heat": clock.heated, "mechanical": clock.stepped}
     wanted = ("heat",) if found.kind == "max_principle" else ("mechanical", "heat") if found.kind == "non_finite" else ("mechanical",)

@@ -6,7 +6,7 @@ Compiled loops report the integer; everything else reads `Outcome`.
 from dataclasses import dataclass
 
 COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
-UNPREPARED, NO_EQUILIBRIUM = 12, 13
+UNPREPARED, NO_EQUILIBRIUM, OUTGROWN = 12, 13, 14
 UNSOUND = -1  # what a block of steps was to begin from: mpm.guards looks again, and says which of these it is
 
 KINDS = {
@@ -27,6 +27,7 @@ KINDS = {
         "no step of implicit mechanics finds a balance of forces",
         "the load may be more than a material without viscosity bears: a smaller load, `eta` in flow, or `method.mechanics: explicit` to see it collapse",
     ),
+    OUTGROWN: ("outgrown", "a body outgrew the total frame", "`method.frame: updated`, or auto, which runs it again there"),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

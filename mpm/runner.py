@@ -15,12 +15,15 @@ import sys
 import numpy as np
 
 from mpm import compiling
-from mpm.costs import estimate, refuse_endless, settled
+from mpm.config.rules_frame import named
+from mpm.costs import estimate, mechanics_settled, refuse_endless, settled
+from mpm.guards import MODERATE
 from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
 from mpm.records.provenance import cores
 from mpm.records.variables import is_total, turn
 from mpm.review import review
+from mpm.scene.framing import choice
 from mpm.scene.inventory import physics
 from mpm.scene.refusal import SceneError, placed
 from mpm.state import Run
@@ -50,10 +53,10 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
         from mpm.reduce.choose import smallest
 
         turns = itertools.count()
-        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, keeper and Turn(keeper, next(turns)), threads))
+        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, threads, keeper and Turn(keeper, next(turns))))
         run.finals |= misfits(experiment, run)
         return complete(experiment, run)
-    return run_named(experiment, beat, compare, keeper, threads)
+    return run_named(experiment, beat, compare, threads, keeper)
 
 
 @placed
@@ -69,10 +72,31 @@ def refuse(experiment) -> None:
         refuse_rigid(experiment)
 
 
-def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads: int = 1) -> Run:
-    """Run the model that the config names."""
+def in_a_frame(experiment, *given, keeper=None) -> Run:
+    """Run `method.frame: auto` (mpm.scene.framing): in the total frame, and again in the updated one where a body outgrows it."""
+    experiment = mechanics_settled(experiment)
+    frame, why = choice(experiment)
+    if frame == "total":
+        try:
+            run = run_named(named(experiment, "total"), *given, keeper=keeper and Turn(keeper, 0), moderate=MODERATE)
+            ended = "" if run.outcome.ok or run.outcome.kind == "budget" else f"the total frame was left: {run.outcome.message or run.outcome.kind}"
+        except SceneError as error:  # what only the scene shows
+            ended = error.message
+        if not ended:
+            run.facts["frame"] = {"name": "total", "why": why}
+            return run
+        why = ended
+    run = run_named(named(experiment, "updated"), *given, keeper=keeper and Turn(keeper, 1))
+    run.facts["frame"] = {"name": "updated", "why": why}
+    return run
+
+
+def run_named(experiment, beat=None, compare: bool = True, threads: int = 1, keeper=None, moderate: float = np.inf) -> Run:
+    """Run the model that the config names. `moderate`: the strain beyond which a body has outgrown the total frame."""
     from mpm.verification import exact_solution
 
+    if experiment.moving and experiment.grid.dimension != 0 and experiment.method.frame == "auto":
+        return in_a_frame(experiment, beat, compare, threads, keeper=keeper)
     experiment = settled(experiment)
     exact, shared, before = exact_solution(experiment), False, compiling.seconds()
     if experiment.grid.dimension == 0:
@@ -88,7 +112,7 @@ def run_named(experiment, beat=None, compare: bool = True, keeper=None, threads:
         scene = build(experiment, exact)
         refuse_endless(experiment, (scene.step or present_limits(scene, Clock(scene)).step() * scene.safety) * scene.scale)
         scene.watch.exact = scene.watch.exact if compare else None
-        scene.threads, scene.watch.shown = threads, shown(experiment)
+        scene.threads, scene.moderate, scene.watch.shown = threads, moderate, shown(experiment)
         run = physical(simulate(scene, beat, keeper), experiment)
         shared = scene.order.shared
     else:
@@ -198,6 +222,7 @@ def compile_ahead(experiment) -> None:
         return
     if experiment.method.mechanics != "explicit":
         return
+    experiment = settled(experiment)
     helper = subprocess.Popen(
         [sys.executable, "-P", "-c", HEAT_STEP, json.dumps(sys.path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
     )

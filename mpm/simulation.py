@@ -68,6 +68,7 @@ class Scene:
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
     threads: int = 1  # that share the work of a large scene
+    moderate: float = math.inf  # the largest strain in the total frame, beyond which a run ends as outgrown (mpm.guards)
     references: tuple = ()  # mpm.total.Reference by body, in the total frame; none in the updated one
     implicit: Any = None  # mpm.implicit.drive.Implicit, or None: explicit mechanics
     order: Order = field(init=False)  # of the particles, while it runs
@@ -218,8 +219,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         if (taken := (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)) is not None and not taken.ok:
             return taken
         clock.gather(dt)
-        failed = next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)
-        if failed is not None:
+        if (failed := next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)) is not None:
             report = clock.reports[failed]
             if report[CODE] == UNSOUND and not (found := guards.whole(scene, clock)).ok:  # before any step
                 return found

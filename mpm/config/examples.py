@@ -146,7 +146,7 @@ FIELDS: dict[str, Any] = {
     "Fit.data": ["centre", "crust"],
     "Chart.error": ["error_l2"],
     "Chart.methods": {"apic": {"set": {"method.transfer": "apic"}}},
-    "Chart.observables": ["temperature_mean"],
+    "Chart.observables": ["temperature.mean"],
     "Chart.reference": "apic",
     "Chart.refine": {"cells": {"grid.cell": ["4 mm", "2 mm", "1 mm"]}},
     "Line.set": {"method.transfer": "apic"},

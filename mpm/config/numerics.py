@@ -160,8 +160,10 @@ class Method(Model):
     transfer: Transfer = doc(Apic(), description="transfer of velocity between particles and grid")
     temperature: Transfer = doc(Apic(), description="transfer of temperature")
     gradient: Annotated[Literal["mls", "bspline"], Choice()] = doc("mls", description="gradient operator of the particles")
-    frame: Annotated[Literal["updated", "total"], Choice()] = doc(
-        "updated", description="updated: particles carry the state over the grid; total: weights of the shape at the start, for bodies that do not flow far"
+    frame: Annotated[Literal["auto", "updated", "total"], Choice()] = doc(
+        "updated",
+        description="updated: particles carry the state over the grid; total: weights of the shape at the start, for bodies that do not flow far; "
+        "auto: total as long as that will do",
     )
     mechanics: Annotated[Literal["auto", "explicit", "implicit"], Choice()] = doc(
         "explicit",

@@ -19,6 +19,23 @@ def known(question, *given) -> bool:
         return False
 
 
+def named(experiment: Any, which: str) -> Any:
+    """The experiment with its frame named."""
+    return experiment.model_copy(update={"method": experiment.method.model_copy(update={"frame": which})})
+
+
+def hindered(experiment: Any) -> str:
+    """Why the total frame cannot take an experiment; empty where it can."""
+    one = named(experiment, "total")
+    found = [*frame(one), *(wrong for side, wall in one.walls.items() for wrong in frame_wall(one, side, wall))]
+    found += [wrong for name, material in one.materials.items() for wrong in frame_material(one, name, material)]
+    if found:
+        return found[0].message
+    if one.tools:
+        return "the total frame knows no tools yet"
+    return "implicit mechanics is known in the updated frame only" if one.method.mechanics == "implicit" else ""
+
+
 def frame(experiment: Any) -> Iterator[Finding]:
     method = experiment.method
     if method.frame != "total":

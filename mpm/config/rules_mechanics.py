@@ -45,7 +45,7 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         yield Finding(at, "implicit mechanics is not known in dimension 3 yet", [EXPLICIT, "dimension 1, 2 or axisymmetric"], given="implicit")
     if len(experiment.bodies) > 1:
         yield Finding(at, "implicit mechanics knows one body only, yet", EXPLICIT, given="implicit")
-    if known(lambda: method.frame != "updated"):
+    if known(lambda: method.frame == "total"):
         yield Finding(("method", "frame"), "implicit mechanics is known in the updated frame only", ["updated", EXPLICIT], on_key=True)
     if known(lambda: grid.basis != "quadratic"):
         yield Finding(("grid", "basis"), "implicit mechanics is known on quadratic splines only", ["quadratic", EXPLICIT], on_key=True)

@@ -14,26 +14,29 @@ Path = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Slot:
-    """A place for a value: its type without Annotated and None, the annotations found on the way, and the field's description."""
+    """A place for a value: its type without Annotated and None, the annotations found on the way, the field's description, and whether None may stand there."""
 
     type: Any
     notes: tuple[Any, ...] = ()
     description: str = ""
+    optional: bool = False
 
     @classmethod
     def of(cls, annotation: Any, notes: tuple = (), description: str = "") -> "Slot":
         """Unpack Annotated[...] and Optional[...]."""
+        optional = False
         while True:
             if get_origin(annotation) is Annotated:
                 annotation, *more = get_args(annotation)
                 notes = (*notes, *more)
             elif get_origin(annotation) in (Union, types.UnionType) and type(None) in get_args(annotation):
+                optional = True
                 left = [item for item in get_args(annotation) if item is not type(None)]
                 annotation = left[0] if len(left) == 1 else Union[tuple(left)]  # noqa: UP007
                 if len(left) != 1:
-                    return cls(annotation, notes, description)
+                    return cls(annotation, notes, description, optional)
             else:
-                return cls(annotation, notes, description)
+                return cls(annotation, notes, description, optional)
 
     def note(self, kind: type) -> Any:
         """The annotation of a class, or None."""

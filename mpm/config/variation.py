@@ -84,7 +84,7 @@ def label(value: Any) -> str:
         return label(value[0])  # a place in 1-D is a number
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(label, value)) + "]"
-    return exactly(value) if isinstance(value, float) else str(value)
+    return exactly(value) if isinstance(value, float) else "none" if value is None else str(value)
 
 
 def exactly(value: float) -> str:

@@ -75,7 +75,7 @@ class Vary:
     def value(self, parameter: Parameter, value: Any, where: Path) -> Any:
         """A value checked by the parameter's own type, as plain SI data."""
         before = len(self.found)
-        if before > MOST_FINDINGS:
+        if before > MOST_FINDINGS or (value is None and parameter.slot.optional and parameter.slot.menu):  # a kind may be absent: `locking: null`
             return None
         try:
             checked = self.adapter(parameter).validate_python(value)
@@ -127,7 +127,7 @@ class Vary:
         seen: set[str] = set()
         for index, value in enumerate(parameter.values):
             text = json.dumps(value)
-            if distinct and value is not None and text in seen:
+            if distinct and (value is not None or values[index] is None) and text in seen:
                 self.found.append(Finding((*where, index), "this value is in the list twice", "each value once", given=values[index]))
             seen.add(text)
 

@@ -10,6 +10,7 @@ Further files
     cut_boundary       plane regions on a grid
     exchange           surfaces of a config
     fracture_surface   faces between the particle cells of a body that may tear
+    framing            which frame `method.frame: auto` takes, and why
     groups             the dimensionless groups of a scene
     implicit           how a scene that asks for implicit mechanics begins
     inventory          what a config holds, from the config alone

@@ -252,6 +252,18 @@ def test_labels_of_kinds_are_distinct_coordinates():
     assert len(set(coordinate.values)) == len(set(told(cases))) == 2
 
 
+def test_a_kind_may_be_absent_at_a_point():
+    """`locking: null` is a value like any other, where a kind may be left out; elsewhere nothing is no value."""
+    elastic = {"materials": {"m": {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}}, "surfaces": [], "output": {}}
+    cases = planned({"axes": {"method.locking": [None, "fbar", {"fbar": {"own": 0}}]}}, **elastic)
+    assert told(cases) == ["locking=none", "locking=fbar(own=0.02)", "locking=fbar(own=0)"]
+    assert cases.cases[0].experiment.method.locking is None and cases.cases[0].run_id == load({**SLAB, **elastic}).run_id
+    with pytest.raises(ConfigError, match="this value is in the list twice"):
+        planned({"axes": {"method.locking": [None, "fbar", None]}}, **elastic)
+    with pytest.raises(ConfigError, match="given nothing"):
+        planned({"axes": {"method.transfer": [None, "flip"]}}, **elastic)
+
+
 def test_more_points_than_can_be_planned_are_refused_at_once():
     for sweep in ({"axes": {"kappa": {"linear": [1, 2, 10**9]}}}, {"sample": {"sobol": {"count": 10**9, "ranges": {"kappa": [0.1, 1]}}}}):
         began = time.process_time()
