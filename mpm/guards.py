@@ -130,6 +130,8 @@ def rounded(body) -> float:
     """Elastic energy of a body at a strain of ROUNDED round-offs [J]: a scene at rest has no other."""
     strain = ROUNDED * float(np.finfo(body.particles.V0.dtype).eps)
     return 0.5 * (body.elastic.lam + 2.0 * body.elastic.mu) * strain**2 * float(np.sum(body.particles.V0, dtype=float))
+
+
 def outgrown(scene, series) -> str:
     """What the total frame does not know, where a body has come to it; empty where all is well."""
     h, names = scene.space.h, [name.removeprefix("position_min_") for name in series if name.startswith("position_min_")]
