@@ -2,6 +2,7 @@
 
 Tensors have a column a component, in the order of mpm.state (mpm.records.variables.components).
 stress              Cauchy [Pa];   strain: elastic Hencky strain, 1/2 log of F_e F_e^T [-], the thermal part included
+stress_recovered    the same from patches (`patches`): linear stress comes out as it is, and what gradients err within a cell is evened out
 displacement        x - X in both frames;   reference_position X;   id: the same number in every snapshot
 velocity_gradient   grad v [1/s], rows of v: of the nodes in the total frame, the slopes that affine transfers carry in the updated one
 """
@@ -14,8 +15,12 @@ from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, nodal, strains, stresses, temperatures, thermal_pressure
 from mpm.error import PLACES, kirchhoff
 from mpm.heat.setting import conditions
+from mpm.records.variables import components
 from mpm.state import PAD, Axisymmetric, Setting
+from mpm.total.reference import sample
+from mpm.transfer import columns
 
+FLAT = 1e-3  # of a squared cell: along what a patch is thinner it has no slope
 AXES = {1: ("x",), 2: ("x", "y"), 3: ("x", "y", "z")}
 
 
@@ -31,6 +36,7 @@ def particle_fields(scene, origins) -> dict[str, np.ndarray]:
         "pressure": lambda body, X: -principal_cauchy(scene, body).mean(axis=1),
         "stress_mises": lambda body, X: mises(principal_cauchy(scene, body)),
         "stress": lambda body, X: cauchy(body),
+        "stress_recovered": lambda body, X: recovered(scene.space, body),
         "strain": lambda body, X: hencky(body),
         "displacement": lambda body, X: body.particles.x.astype(float) - X,
         "reference_position": lambda body, X: X,
@@ -50,6 +56,46 @@ def particle_fields(scene, origins) -> dict[str, np.ndarray]:
 def cauchy(body) -> np.ndarray:
     """Cauchy stress (N, K) [Pa]."""
     return kirchhoff(body) / body.particles.J[:, None].astype(float)
+
+
+def patches(space, body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(volume (n,), a (n, K), b (n, K, D)): a + b x is the linear function that fits the Cauchy stress best round each node [Pa, Pa/m].
+
+    Least squares over the particles that see the node, each by w V: superconvergent patches (Zienkiewicz & Zhu 1992) of particles in place of Gauss points.
+    Where a patch holds one layer of particles only it is constant across.
+    """
+    x, sigma, V = body.particles.x.astype(float), cauchy(body), (body.particles.V0 * body.particles.J).astype(float)
+    (N, D), K, n = x.shape, sigma.shape[1], math.prod(extents(space))
+    columns_of = np.concatenate(
+        [np.ones((N, 1)), x, (x[:, :, None] * x[:, None]).reshape(N, -1), sigma, (sigma[:, :, None] * x[:, None]).reshape(N, -1)], axis=1
+    )
+    sums = np.zeros((columns_of.shape[1], n))
+    for row, column in zip(sums, (V[:, None] * columns_of).T, strict=True):
+        nodal(space, np.ascontiguousarray(x), np.ascontiguousarray(column), row)
+    volume, seen = sums[0], sums[0] > 0
+    means = np.where(seen, sums / np.where(seen, volume, 1.0), 0.0).T
+    middle, square, mean, cross = np.split(means[:, 1:], np.cumsum([D, D * D, K]), axis=1)
+    spread = square.reshape(n, D, D) - middle[:, :, None] * middle[:, None]
+    size, axes = np.linalg.eigh(spread)
+    inverse = np.where(size > FLAT * space.h**2, 1 / np.where(size > FLAT * space.h**2, size, 1.0), 0.0)
+    slope = (cross.reshape(n, K, D) - mean[:, :, None] * middle[:, None]) @ (axes * inverse[:, None]) @ np.swapaxes(axes, 1, 2)
+    return volume, mean - np.einsum("nkd,nd->nk", slope, middle), slope
+
+
+def recovered(space, body) -> np.ndarray:
+    """Recovered Cauchy stress of the particles (N, K) [Pa]: sum w (a + b x) of their nodes' patches."""
+    x = np.ascontiguousarray(body.particles.x, dtype=float)
+    _, a, b = patches(space, body)
+    (N, D), (n, K) = x.shape, a.shape
+    fields = np.concatenate([a, b.reshape(n, -1)], axis=1)
+    found = np.zeros((N, fields.shape[1]))
+    for first in range(0, fields.shape[1], D):
+        some, value = fields[:, first : first + D], np.zeros((N, D))
+        nodes = np.zeros((n, columns(D)))
+        nodes[:, : some.shape[1]] = some
+        sample(space, nodes, x, value, np.zeros((N, D, D)))
+        found[:, first : first + D] = value[:, : some.shape[1]]
+    return found[:, :K] + np.einsum("nkd,nd->nk", found[:, K:].reshape(N, K, D), x)
 
 
 def hencky(body) -> np.ndarray:
@@ -98,7 +144,22 @@ def grid_fields(scene) -> dict[str, np.ndarray]:
         if "temperature" in scene.watch.grid:
             heat = gathered(lambda body: body.particles.m * (temperatures(body)))
             fields["temperature"] = (heat / mass).astype(np.float32)
+        if "stress" in scene.watch.grid:
+            fields |= stress_on_nodes(scene, shape, volume)
     return fields
+
+
+def stress_on_nodes(scene, shape, volume) -> dict[str, np.ndarray]:
+    """Recovered Cauchy stress at the nodes inside the domain, a field a component; of several bodies the mean by volume."""
+    D, inside = len(shape), tuple(slice(PAD, size - PAD) for size in shape)
+    x = np.stack(np.meshgrid(*((np.arange(size) - PAD) * scene.space.h for size in shape), indexing="ij"), axis=-1).reshape(-1, D)
+    total = 0.0
+    for body in scene.bodies:
+        here, a, b = patches(scene.space, body)
+        total = total + here[:, None] * (a + np.einsum("nkd,nd->nk", b, x))
+    names = components("stress", "axisymmetric" if isinstance(scene.space, Axisymmetric) else D).split()
+    turned = [row.reshape(shape)[inside].transpose(*range(D - 1, -1, -1)) / volume for row in np.asarray(total).T]
+    return {f"stress_{name}": row.astype(np.float32) for name, row in zip(names, turned, strict=True)}
 
 
 def axis_names(space) -> tuple[str, ...]:

@@ -9,10 +9,11 @@ from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
 from mpm.config.programmes import Beta, EmissivityProgramme, FluxProgramme, Moment, Programme
 from mpm.config.quantities import Friction
 
-Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral"], Choice()]
+Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral", "inner", "outer"], Choice()]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
               3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
-SURFACE_SIDES = {0: ("all",), 1: ("all", "left", "right"), 2: ("all", "left", "right", "bottom", "top"), "axisymmetric": ("all", "lateral", "bottom", "top"),
+SURFACE_SIDES = {0: ("all",), 1: ("all", "left", "right"), 2: ("all", "left", "right", "bottom", "top"),
+                 "axisymmetric": ("all", "lateral", "inner", "outer", "bottom", "top"),
                  3: ("all", "left", "right", "front", "back", "bottom", "top", "lateral")}  # fmt: skip
 EXCHANGES = ("convection", "flux", "fixed", "radiation")
 

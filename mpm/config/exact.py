@@ -70,4 +70,35 @@ class CooksMembrane(Kind):
     body: str | None = doc(None, description=BODY)
 
 
-MOVING: tuple[type[Kind], ...] = (RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured, CooksMembrane)
+class Cantilever(Kind):
+    """A beam held at one end, at rest under its own weight, by finite elements of the same law: however far it bends."""
+
+    kind: ClassVar[str] = "cantilever"
+    body: str | None = doc(None, description=BODY)
+
+
+class TractionBar(Kind):
+    """A bar in uniaxial strain, pulled at its end until it rests: uniform stress."""
+
+    kind: ClassVar[str] = "traction_bar"
+    body: str | None = doc(None, description=BODY)
+
+
+class ThermalShock(Kind):
+    """A slab that is cooled at one face at once, free along and held across: thermal stress in uniaxial strain."""
+
+    kind: ClassVar[str] = "thermal_shock"
+    body: str | None = doc(None, description=BODY)
+
+
+class ThermalCylinder(Kind):
+    """A long thick cylinder between two temperatures, at rest: Lamé's thermal stress in plane strain."""
+
+    kind: ClassVar[str] = "thermal_cylinder"
+    body: str | None = doc(None, description=BODY)
+
+
+MOVING: tuple[type[Kind], ...] = (
+    RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured, CooksMembrane, Cantilever, TractionBar, ThermalShock,
+    ThermalCylinder,
+)  # fmt: skip

@@ -169,7 +169,7 @@ def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
 
 def covered(side: str, dimension: Any) -> set[str]:
     """The sides that a side's name stands for."""
-    every = {*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension == 3 else set())
+    every = {*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension in (3, "axisymmetric") else set())
     return every if side == "all" else every - {"bottom", "top"} if side == "lateral" else {side}
 
 

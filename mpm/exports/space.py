@@ -10,7 +10,7 @@ import numpy as np
 PLACES = {1: (0,), 2: (0, 1), "axisymmetric": (0, 2), 3: (0, 1, 2)}  # of the scene's directions among x, y, z
 SYMMETRIC = {1: (0, 1, 2), 2: (0, 1, 2, 3), "axisymmetric": (0, 2, 1, 5), 3: (0, 1, 2, 3, 4, 5)}  # of the columns of a tensor (records.variables.components)
 VECTORS = ("position", "velocity", "displacement", "reference_position")
-TENSORS = ("stress", "strain")
+TENSORS = ("stress", "stress_recovered", "strain")
 
 
 def spatial(name: str, values: np.ndarray, dimension: Any) -> np.ndarray:

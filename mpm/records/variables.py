@@ -138,6 +138,7 @@ TABLE = [
     ("J", "J", "1", PARTICLES, "volume ratio det F"),
     ("stress_mises", "", "Pa", PARTICLES, "von Mises stress"),
     ("stress", "σ", "Pa", PARTICLES, "Cauchy stress, positive in tension"),
+    ("stress_recovered", "σ", "Pa", PARTICLES, "Cauchy stress, linear over patches of cells by least squares"),
     ("strain", "ε", "1", PARTICLES, "elastic Hencky strain, with what temperature has expanded"),
     ("displacement", "u", "m", PARTICLES, "displacement since the start"),
     ("reference_position", "X", "m", PARTICLES, "position at the start"),
@@ -148,6 +149,7 @@ TABLE = [
     ("row_size", "", "1", PARTICLES, "number of particles in this snapshot"),
     ("row_start", "", "1", PARTICLES, "where this snapshot begins in obs"),
     # a direction each
+    *((f"stress_{ab}", "σ", "Pa", GRID, f"Cauchy stress {ab}, positive in tension, recovered") for ab in ("xy", "yz", "xz", "rr", "tt", "rz")),
     *((f"velocity_{a}", f"v{a}", "m/s", GRID, f"velocity along {a}") for a in AXES),
     *((f"momentum.{a}", "p", "kg m/s", SERIES, f"momentum along {a}") for a in AXES),
     *((f"position.mean_{a}", a, "m", SERIES, f"centre of mass along {a}") for a in AXES),
@@ -165,10 +167,11 @@ MET = {  # what a wall, a tool or another body does: <what>.<of>, with a directi
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
 NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "work.loads", "velocity.max",
                   "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
-FIELDS_GRID = ("temperature", "velocity", "density")
+FIELDS_GRID = ("temperature", "velocity", "density", "stress")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body",
-                    "stress", "strain", "displacement", "reference_position", "velocity_gradient", "id", "setting")  # fmt: skip
-TENSORS = ("stress", "strain", "velocity_gradient")  # fields of particles with a column a component
+                    "stress", "stress_recovered", "strain", "displacement", "reference_position", "velocity_gradient", "id",
+                    "setting")  # fmt: skip
+TENSORS = ("stress", "stress_recovered", "strain", "velocity_gradient")  # fields of particles with a column a component
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 
 _THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")

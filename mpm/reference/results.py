@@ -111,7 +111,8 @@ SIDES = {
     "front": "lowest y in three dimensions",
     "back": "highest y in three dimensions",
     "lateral": "round about the axis: all of the surface but bottom and top",
-    "outer": "largest r",
+    "inner": "of a body: what faces the axis, along r",
+    "outer": "of the domain: largest r; of a body: what faces away from the axis, along r",
 }
 KINDS = tuple(warned.KINDS.items())
 FIELDS = {"grid": variables.FIELDS_GRID, "particles": variables.FIELDS_PARTICLES}

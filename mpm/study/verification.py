@@ -115,7 +115,8 @@ def method(experiment) -> str:
     if not experiment.moving:
         return f"rigid, {type(experiment.method.rigid).kind}"
     used = experiment.method
-    words = [type(used.transfer).kind, used.gradient, f"{used.particles} particles"]
+    words = ["total frame"] if used.frame == "total" else [type(used.transfer).kind, used.gradient]
+    words += [f"{used.particles} particles"]
     words += [experiment.grid.basis] * (experiment.grid.basis != "quadratic") + ([type(used.locking).kind] if used.locking is not None else [])
     return ", ".join(words)
 

@@ -6,6 +6,7 @@ To add    a file with `exact`, its kind in config.output, a line in EXACT; a con
 
 Further files
     adiabatic            adiabatic compression of a thermoelastic point
+    cantilever           a cantilever at rest under its own weight, by finite elements
     cooks_membrane       Cook's membrane
     free_fall            flight under gravity
     gaussian_box         A Gaussian that spreads in an insulated box, by images
@@ -28,12 +29,16 @@ Further files
     shear_heating        adiabatic heating of a point that is sheared past its yield stress
     standing_wave        A linear thermoelastic wave between insulated walls
     stefan               melting of a half space behind a hot face
+    thermal_cylinder     a thick cylinder between two temperatures, at rest
+    thermal_shock        a slab that is cooled at once, held across and free along
+    traction_bar         a bar that is pulled at its end until it rests
     thermal_expansion    thermal expansion of an elastic point, free in n of its three directions and held in the others
 """
 
 from mpm.scene.refusal import SceneError
 from mpm.verification import (
     adiabatic,
+    cantilever,
     cooks_membrane,
     free_fall,
     gaussian_box,
@@ -53,7 +58,10 @@ from mpm.verification import (
     shear_heating,
     standing_wave,
     stefan,
+    thermal_cylinder,
     thermal_expansion,
+    thermal_shock,
+    traction_bar,
 )
 
 EXACT = {
@@ -78,9 +86,13 @@ EXACT = {
     "stefan": stefan.exact,
     "layers": layers.exact,
     "cooks_membrane": cooks_membrane.exact,
+    "cantilever": cantilever.exact,
+    "traction_bar": traction_bar.exact,
+    "thermal_shock": thermal_shock.exact,
+    "thermal_cylinder": thermal_cylinder.exact,
 }
 
-LOADED = ("cooks_membrane",)  # scenes that have loads of their own
+LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder")  # scenes that have loads of their own
 
 
 def exact_solution(experiment):

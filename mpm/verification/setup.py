@@ -80,3 +80,27 @@ def elastic_only(experiment, body, gravity: bool = False):
     if not hencky or material.flow is not None or material.expansion is not None or (experiment.gravity is not None and not gravity):
         raise ValueError("the exact solution needs a body with elastic: hencky, without flow and expansion" + ("" if gravity else ", and no gravity"))
     return elastic_law(material.elastic), material.density
+
+
+def at_rest(displacement, stress, where=None, start=None):
+    """A Motion that is compared where it has come to rest, at the end of the run: displacement(X) (N, D), stress(X) (N, K) as mpm.error has them.
+
+    Relative errors of both, root mean squares; those of stress over the particles where(X) alone. error_stress_max [Pa] is that of the worst of them.
+    """
+    from mpm.error import Motion
+
+    def mean(values, V):
+        return float(np.sqrt(V @ np.sum(values**2, axis=1) / V.sum()))
+
+    def measure(X, V, found):
+        kept = np.ones(len(X), bool) if where is None else where(X)
+        u, tau = displacement(X), stress(X[kept])
+        wrong, stray = found["displacement"] - u, found["stress"][kept] - tau
+        sizes.update(displacement=mean(u, V), stress=mean(tau, V[kept]))
+        return {"error_displacement_l2": mean(wrong, V), "error_stress_l2": mean(stray, V[kept]), "error_stress_max": float(np.sqrt(np.sum(stray**2, 1)).max())}
+
+    def conclude(times, series):
+        return {f"error_{name}": float(series[f"error_{name}_l2"][-1]) / size for name, size in sizes.items()}
+
+    sizes: dict[str, float] = {}
+    return Motion({}, start, measure, conclude, observed=("displacement", "stress"))

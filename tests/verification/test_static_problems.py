@@ -1,0 +1,97 @@
+"""Answers at rest and thermal stress: exact solutions against independent ones; in the total frame to the orders that they declare."""
+
+import numpy as np
+import pytest
+
+from mpm.verification import cantilever, exact_solution, thermal_cylinder
+
+TOTAL = {"method.frame": "total"}
+
+
+def apart(motion, X, displacement, stress):
+    """Relative differences between a solution at rest and another, at points of equal volume."""
+    found = motion.measure(X, np.ones(len(X)), {"displacement": displacement, "stress": stress})
+    return {name: value / np.sqrt(np.mean(np.sum(values**2, axis=1))) for name, values in (("displacement", displacement), ("stress", stress))
+            for value in [found[f"error_{name}_l2"]]}  # fmt: skip
+
+
+def test_cylinder_solves_its_equations_on_a_fine_line(shipped):
+    """Finite differences of (lam + 2 mu) (u' + u/r)' = gamma d', sigma_r = 0 inside and outside, with 4000 points."""
+    from scipy.sparse import diags, lil_matrix
+    from scipy.sparse.linalg import spsolve
+
+    experiment = shipped("thermal_cylinder")
+    (a, _), (b, _) = experiment.bodies["pipe"].shape.lower, experiment.bodies["pipe"].shape.upper
+    lam, mu = 0.3 / (1.3 * 0.4), 1 / 2.6
+    gamma = (3 * lam + 2 * mu) * 1e-7
+    r = np.linspace(a, b, 4001)
+    h, d = r[1] - r[0], 20 + 80 * np.log(b / r) / np.log(b / a)
+    middle = slice(1, -1)
+    A = lil_matrix(diags([1 / h**2 - 0.5 / (h * np.append(r[1:], 1.0)), -2 / h**2 - 1 / r**2, 1 / h**2 + 0.5 / (h * r)], [-1, 0, 1], shape=(4001, 4001)))
+    right = gamma / (lam + 2 * mu) * np.gradient(d, h)
+    for row, step in ((0, 1), (-1, -1)):  # one-sided, of order 2
+        A[row, :] = 0
+        for k, weight in enumerate((-1.5, 2.0, -0.5)):
+            A[row, row + k * step] = (lam + 2 * mu) * weight * step / h + (lam / r[row] if k == 0 else 0)
+        right[row] = gamma * d[row]
+    u = spsolve(A.tocsc(), right)
+    slope = np.gradient(u, h, edge_order=2)
+    dilation = slope + u / r
+    tau = np.stack([2 * mu * e + lam * dilation - gamma * d for e in (slope, 0 * r, u / r, 0 * r)], axis=1)
+    tau[:, 3] = 0
+    X = np.stack([r, 0 * r], axis=1)
+    error = apart(exact_solution(experiment), X[middle], np.stack([u, 0 * u], axis=1)[middle], tau[middle])
+    assert error["displacement"] < 1e-6 and error["stress"] < 1e-5
+
+
+def test_cantilever_is_that_of_a_beam_and_of_other_elements():
+    """Deflection 3/2 (1 - nu^2) w L^4/(E H^2) of bending, w L^2/(2 mu 5/6) of shear; stress M y/I half way."""
+    E, nu, L, H, w = 1e6, 0.3, 1.0, 0.05, 1.0
+    lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+    mesh, u = cantilever.rest(L, H, lam, mu, (0.0, -w))
+    bending, shear = 1.5 * (1 - nu**2) * w * L**4 / (E * H**2), w * L**2 / (2 * mu * 5 / 6)
+    assert -u[2 * mesh.nx * mesh.columns + mesh.ny, 1] == pytest.approx(bending + shear, rel=5e-3)
+    x = np.stack([np.full(9, 0.5), np.linspace(0.1, 0.9, 9) * H], axis=1)
+    tau = cantilever.kirchhoff(mesh, u, x, lam, mu)
+    assert tau[:, 0] == pytest.approx(w * H * 0.5**2 / 2 * (x[:, 1] - H / 2) / (H**3 / 12), abs=2e-3 * np.abs(tau[:, 0]).max())
+
+
+@pytest.mark.slow  # 200 elements along, Newton's method
+def test_far_cantilever_is_that_of_other_elements():
+    E, nu = 1e6, 0.3
+    mesh, u = cantilever.rest(1.0, 0.1, E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)), (0.0, -4578.75))
+    assert -u[2 * mesh.nx * mesh.columns + mesh.ny, 1] == pytest.approx(0.5039, rel=2e-4)  # its own limit; 0.50389 by full integration of 60 x 6
+
+
+def test_bar_and_shock_hold_what_they_say(shipped):
+    """P = T everywhere in the bar; nothing along the slab that is free to expand, and -E a/(1 - nu) (theta - theta_0) across."""
+    motion, X = exact_solution(shipped("traction_bar")), np.linspace(0, 1.02, 7)[:, None]
+    low, high = 0.0, 1.0
+    for _ in range(80):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (0.7 / (1.3 * 0.4)) * middle * np.exp(-middle) < 0.1 else (low, middle)
+    tau = np.tile([0.7 / (1.3 * 0.4) * low, 0.3 / (1.3 * 0.4) * low, 0.3 / (1.3 * 0.4) * low], (7, 1))
+    error = apart(motion, X[1:], np.expm1(low) * X[1:], tau[1:])
+    assert max(error.values()) < 1e-12
+    shock = exact_solution(shipped("thermal_shock"))
+    theta, tau = shock.fields["temperature"](X[:6] / 1.1, 0.05), shock.fields["stress"](X[:6] / 1.1, 0.05)
+    assert (tau[:, 0] == 0).all() and tau[:, 1] == pytest.approx(-1e-8 / 0.7 * (theta - 400))
+
+
+@pytest.mark.parametrize(("name", "changes", "said"), [
+    ("cantilever", {"walls.left": "slip"}, "stick"),
+    ("traction_bar", {"loads.0.traction.nominal": [0.9]}, "most that Hencky's law bears"),
+    ("thermal_shock", {"bodies.slab.temperature": 390}, "reference temperature"),
+    ("thermal_cylinder", {"surfaces.0.side": "lateral", "surfaces.1.side": "top"}, "inner and outer"),
+])  # fmt: skip
+def test_another_scene_is_refused(shipped, name, changes, said):
+    with pytest.raises(ValueError, match=said):
+        exact_solution(shipped(name, changes))
+
+
+@pytest.mark.slow  # compilations of heat in the total frame
+def test_orders_in_the_total_frame(core, points):
+    cells = (0.1, 0.05, 0.025)
+    for name, least in (("cantilever", 1.5), ("thermal_cylinder", thermal_cylinder.ORDER)):
+        errors = [run.finals["error_displacement"] for run in points(f"{name}_total", "grid.cell", cells)]
+        assert core.order(errors) > least
