@@ -4,10 +4,10 @@ import json
 from typing import Any
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from mpm.plots import words
-from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, figure, styled
+from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, Plain, figure, styled
 
 
 def draw(tree: Any) -> Any:
@@ -81,7 +81,7 @@ def valley(ax: Any, root: Any, profile: Any, k: int) -> None:
     ax.plot(fine, np.interp(fine, value, side) ** 2, color=OKABE_ITO[0], label="profile")
     ax.plot(value, rise, "o", color=OKABE_ITO[0], ms=4)
     ax.xaxis.set_major_locator(MaxNLocator(4))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: words.number(x)))
+    ax.xaxis.set_major_formatter(Plain())
     room = 0.08 * (high - low) or 1.0
     ax.set_xlim(min(low, x[0]) - room, max(high, x[-1]) + room)
     ax.axhline(1, color=QUIET, lw=0.8)

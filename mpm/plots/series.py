@@ -41,7 +41,10 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
     kinds = entries(view, names, lines) if len(names) > 1 or dots else []
     cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
-    values = [] if lines is None else [heading(lines.title), *(Line2D([], [], color=colours[i], label=lines.text(i)) for i in indices)]
+    values = []
+    if lines is not None:
+        texts = words.numbers(lines.values[indices]) if not lines.category else [lines.text(i) for i in indices]
+        values = [heading(lines.title), *(Line2D([], [], color=colours[i], label=text) for i, text in zip(indices, texts, strict=True))]
     legend_below(ax, [values, kinds + dots, cross] if len(kinds + dots) < 4 else [values, kinds, dots, cross])
 
 

@@ -18,10 +18,10 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import Formatter, FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from mpm.plots.words import number
+from mpm.plots.words import number, numbers
 from mpm.text import visible
 
 WIDTH, DPI = 1600 / 150, 150
@@ -147,6 +147,16 @@ def plain_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+class Plain(Formatter):
+    """Ticks in our own numbers, in as many digits as tell them apart."""
+
+    def __call__(self, value: float, place: int | None = None) -> str:
+        return number(value)
+
+    def format_ticks(self, values: Any) -> list[str]:
+        return numbers(map(float, values))
+
+
 def settle(axes: Iterable[Any]) -> None:
     """Ticks in our own numbers wherever matplotlib would write mathematics or put a factor at the end of the axis."""
     for axis in (axis for ax in axes for axis in (ax.xaxis, ax.yaxis)):
@@ -154,7 +164,7 @@ def settle(axes: Iterable[Any]) -> None:
         if isinstance(formatter, LogFormatter):
             plain_ticks(axis)
         elif isinstance(formatter, ScalarFormatter) and not SMALLEST <= span < LARGEST:
-            axis.set_major_formatter(FuncFormatter(lambda value, _: number(value, 4)))
+            axis.set_major_formatter(Plain())
 
 
 def heading(text: str) -> Any:

@@ -53,7 +53,8 @@ def page(found: Results) -> str:
 
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
     made = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    parts = content(found) | {"studies": beside(found), "figures": figures(found), "movie": movie(found)}
+    studied = beside(found)
+    parts = content(found, [one["name"] for one in studied]) | {"studies": studied, "figures": figures(found), "movie": movie(found)}
     policy = f"default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src '{digest(style)}'; script-src '{digest(script)}'"
     return made.get_template("page.html").render(parts | {"shown": shown, "policy": policy, "style": Markup(style), "script": Markup(script)})
 

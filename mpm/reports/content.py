@@ -16,8 +16,8 @@ OPEN = 30  # rows of a table that is shown at once; longer ones are folded
 MOMENTS = 6  # times of a series in its table
 
 
-def content(found: Results) -> dict[str, Any]:
-    """Everything but the figures."""
+def content(found: Results, beside: list[str]) -> dict[str, Any]:
+    """Everything but the figures and the studies, whose names are `beside`."""
     view, attrs = found.view, found.view.root.attrs
     table = points(view)
     return {
@@ -34,7 +34,7 @@ def content(found: Results) -> dict[str, Any]:
         "warnings": warnings(view),
         "costs": costs(view),
         "provenance": provenance(attrs),
-        "again": again(view, attrs),
+        "again": again(view, attrs, beside),
         "data": data(table),
     }
 
@@ -140,9 +140,11 @@ def provenance(attrs: dict[str, Any]) -> list[tuple[str, str]]:
     return [(visible(str(name)), visible(str(value))) for name, value in told if value not in (None, "")]
 
 
-def again(view: View, attrs: dict[str, Any]) -> str:
-    """The command that makes the numbers again from the config above."""
-    return f"mpm {'sweep' if view.dims else 'run'} {visible(str(attrs.get('name', 'experiment')))}.yaml"
+def again(view: View, attrs: dict[str, Any], beside: list[str]) -> str:
+    """The command that makes the numbers again from the config above; `beside`: the studies of the folder."""
+    command = next((name for name in ("fit", "stability", "chart") if name in beside), "sweep" if view.dims else "run")
+    told = f"mpm {command} {visible(str(attrs.get('name', 'experiment')))}.yaml"
+    return f"{told} -o OUT && mpm sensitivity OUT" if "sensitivity" in beside else told
 
 
 def data(table: dict[str, Any]) -> dict[str, Any]:

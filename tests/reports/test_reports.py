@@ -147,6 +147,7 @@ def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch)
     if name in STUDIES:
         answer = {"fit": "kappa 2.5", "stability": "boundary at 12.", "sensitivity": "kappa"}[name]
         assert answer in shown and ("img", "class", name) in tags.attributes and tags.tags.count("table") >= 3
+        assert {"fit": "mpm fit experiment.yaml", "stability": "mpm stability experiment.yaml", "sensitivity": "mpm sensitivity OUT"}[name] in shown
     if name == "fit":
         assert "Parameters with 95 % intervals" in shown and "materials.m.heat.fourier.kappa" in shown
     if name == "stability":
