@@ -12,6 +12,7 @@ from mpm.text import visible
 
 KELVIN = 273.15
 SYMBOLS = {"kappa": "κ", "beta": "β", "alpha": "α", "eta": "η", "p0": "p₀", "nu": "ν", "mu": "μ", "lam": "λ", "gamma": "γ"}
+LONGEST = 24  # letters of a unit
 ENERGIES = ("J", "J/m", "J/m2")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _TEMPERATURES = ("temperature", "outside", "reference", "at")  # last words of config paths that name a temperature, not a difference
@@ -33,7 +34,8 @@ def units_text(units: str) -> str:
     """`W/m2/K` -> `W/m²/K`, `Pa*s` -> `Pa s`, `1` -> nothing."""
     if units in ("1", ""):
         return ""
-    plain = units.replace("**", "").replace("^", "").replace("*", " ")
+    plain = visible(units).replace("**", "").replace("^", "").replace("*", " ")
+    plain = plain if len(plain) <= LONGEST else plain[: LONGEST - 1] + "…"
     return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_RAISED), plain)
 
 

@@ -2,11 +2,13 @@
 
 import html.parser
 import importlib.util
+import json
 import os
 import re
 import time
 from pathlib import Path
 
+import h5py
 import pytest
 
 import mpm
@@ -16,6 +18,7 @@ HERE = Path(__file__).parent
 spec = importlib.util.spec_from_file_location("browser", HERE / "browser.py")
 browsers = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(browsers)
+NAME = "</script><script>document.title='owned'</script>"
 HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">'\"&{{7*7}}"
 
 
@@ -58,7 +61,7 @@ def plane(folder, monkeypatch):
 
 
 def hostile(folder, monkeypatch):
-    """Script in the title, in the text of an error and of a warning, in the name of what failed."""
+    """Script in the title, a comment, the head of a measured table, an error and a warning, names and units of a dataset; names of the config are refused."""
     import fake_runner
 
     monkeypatch.setattr(fake_runner, "WARNINGS", [f"volume: {HOSTILE}; {HOSTILE}"])
@@ -70,7 +73,22 @@ def hostile(folder, monkeypatch):
         return before(experiment, beat, keeper)
 
     monkeypatch.setattr(fake_runner, "run_point", run_point)
-    return sweep(folder, monkeypatch, title=HOSTILE, kappas=(1.0, 3.0, 10.0))
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    folder.parent.joinpath("curve.csv").write_text(f"minute,{NAME}_degC\n0.05,30\n0.1,40\n")
+    one = configured(title=HOSTILE, kappas=(1.0, 3.0, 10.0))
+    curve = {"file": "curve.csv", "time": "minute", "value": f"{NAME}_degC"}
+    one["output"]["measured"] = {"centre": curve}
+    with pytest.raises(mpm.ConfigError, match="not a plain name"):
+        mpm.load(one | {"bodies": {NAME: one["bodies"]["s"]}})
+    folder.parent.joinpath("hostile.yaml").write_text(f"# {HOSTILE}\n{json.dumps(one)}\n")
+    mpm.sweep(mpm.load(folder.parent / "hostile.yaml"), out=folder, jobs=0)
+    with h5py.File(folder / "sweep.nc", "r+") as file:  # as one that somebody sent: words of its own everywhere
+        for name in ("kappa", "temperature_mean", "series/temperature_centre"):
+            for key in ("long_name", "units", "config_path"):
+                if key in file[name].attrs:
+                    file[name].attrs[key] = HOSTILE
+        file.attrs["name"] = file.attrs["git_revision"] = HOSTILE
+    return folder
 
 
 def thousand(folder, monkeypatch):
@@ -136,7 +154,7 @@ def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch)
         assert not attribute.startswith("on") and attribute != "style", (tag, attribute)
         if attribute in ("src", "href"):
             assert value.startswith(("data:", "#")), value[:80]
-    assert "{{" not in re.sub(r"\{\{7\*7\}\}", "", page) and "49" not in "".join(tags.text)[:200]
+    assert "{{" not in re.sub(r"\{\{7.7\}\}", "", page) and "49" not in "".join(tags.text)[:200]
     policy = next(value for tag, attribute, value in tags.attributes if attribute == "content" and "default-src" in value)
     assert policy.startswith("default-src 'none'") and "unsafe" not in policy
     assert all(value for tag, attribute, value in tags.attributes if tag == "img" and attribute == "alt")
@@ -153,7 +171,7 @@ def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch)
     if name == "stability":
         assert "theory <b>" in shown and "b" not in tags.tags
     if name == "hostile":
-        assert shown.count("document.title='owned'") >= 3  # as text: title, error, warning
+        assert shown.count("document.title='owned'") >= 7  # as text: title, error, warning, a comment, a table's head, meanings, units, provenance
     if name == "failed":
         assert "no such luck" in shown and "det F <= 0" in shown
 
