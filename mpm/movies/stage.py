@@ -17,7 +17,7 @@ from mpm.records.variables import VARIABLES
 from mpm.text import visible
 
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
-BESIDE = 0.3  # of the particles' extent
+BESIDE = 0.6  # of the particles' extent
 BALLS = 3.0  # square points of a dot that is large enough to be shaded as a ball
 SAMPLES = 12  # snapshots that the limits of colour and space are taken from
 SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
@@ -191,6 +191,7 @@ class Stage:
     def dot(self, count: int) -> float:
         """Area of a dot in square points, so that particles that fill a third of the panel about touch."""
         width, height = self.ax.get_position().size * self.ax.figure.get_size_inches() * 72
+        count = 3.0 * count ** (2.0 / 3.0) if self.look.dimension == 3 else count  # those on the three sides that are seen
         return float(np.clip(0.6 * width * height / max(count, 1), 0.3, 60.0))
 
     def on_grid(self, frame: Any, values: np.ndarray, lines: bool) -> None:

@@ -47,7 +47,7 @@ def card(tree: xarray.DataTree) -> str:
     view = View(tree)
     rows = [varied(axis, view) for axis in (view.parameters if view.design is not None else view.axes)]
     parts = [f"<h4>{html.escape(view.title)}</h4>", "<ul>"]
-    parts += [f"<li>{html.escape(row['name'])}: {html.escape(row['said'])} {html.escape(row['units'])}</li>" for row in rows]
+    parts += [f"<li>{html.escape(row['name'])}: {html.escape(row['said'])}</li>" for row in rows]
     counts = {STATUS[code]: int((view.status == code).sum()) for code in sorted({int(code) for code in view.status.ravel()})}
     parts.append(f"<li>{', '.join(f'{count} {name}' for name, count in counts.items())}</li>")
     parts += [f"<li>{row['count']} x {html.escape(row['reason'])}. {html.escape(row['advice'])}</li>" for row in failures(view)]

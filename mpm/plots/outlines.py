@@ -94,12 +94,19 @@ def shape(said: dict[str, Any], dimension: Any) -> list[np.ndarray]:
     if kind == "cylinder":
         base, radius, height = np.asarray(about["base"], float), float(about["radius"]), float(about["height"])
         if dimension != 3:
-            return edges(np.array([0.0, base[-1]]), np.array([radius, base[-1] + height]))
+            return [half(np.array([0.0, base[-1]]), np.array([radius, base[-1] + height]))]
         ends = [circle(base + np.array([0.0, 0.0, up]), radius, (0, 1)) for up in (0.0, height)]
         return ends + [np.array([ends[0][k], ends[1][k]]) for k in range(0, ROUND, ROUND // 4)]
     lower, upper, angle = np.asarray(about["lower"], float), np.asarray(about["upper"], float), float(about.get("angle") or 0.0)
+    if dimension == "axisymmetric" and lower[0] <= 0.0:
+        return [half(lower, upper)]
     centre, turn = 0.5 * (lower + upper), rotation({"spin": angle}, 1.0, 2) if angle else np.eye(len(lower))
     return [(line - centre) @ turn.T + centre for line in edges(lower, upper)]
+
+
+def half(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """A rectangle of r and z from the axis on, without the side that lies on the axis."""
+    return np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
 
 
 def edges(low: np.ndarray, high: np.ndarray) -> list[np.ndarray]:

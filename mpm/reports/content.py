@@ -43,9 +43,10 @@ def varied(axis: Any, view: View) -> dict[str, Any]:
     """A row of what varied: name, meaning, path, values."""
     coordinate = view.root.coords[axis.name].attrs
     values = [axis.text(i) for i in range(axis.size)]
-    said = ", ".join(values) if len(values) <= 12 else f"{words.number(axis.values.min())} to {words.number(axis.values.max())}, {len(values)} values"
+    ends = f"{words.number(axis.values.min())} to {words.number(axis.values.max())}" if len(values) > 12 else ", ".join(values)
+    said = f"{ends} {axis.units}".strip() + (f", {len(values)} values" if len(values) > 12 else "")
     about = visible(words.short(str(coordinate.get("long_name", ""))))
-    return {"name": visible(axis.name), "about": about, "path": visible(str(coordinate.get("config_path", ""))), "said": said, "units": axis.units}
+    return {"name": visible(axis.name), "about": about, "path": visible(str(coordinate.get("config_path", ""))), "said": said}
 
 
 def points(view: View) -> dict[str, Any]:
