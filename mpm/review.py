@@ -3,6 +3,8 @@
 volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion at the temperatures reached explains; not where loads press
 heat      heat content and heat taken in disagree by more than HEAT of the larger, or of what the spread of temperatures holds; XPIC carries temperatures to
           a surface that is all but held (beta h > kappa), where it reads particles that are too warm (integrate/bounds.py: 1.6 to 4.3 % of the fall)
+depth     heat that a surface exchanges reaches less than DEPTH cells deep: bodies that do not move take in 2 % too little at 0.25 cells, three times too
+          much at 0.12, and what should go to 0 with kappa stays (a slab of 20 cells after 60 s, against exp(H^2) erfc(H))
 energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads. It shows in the answer: slump.yaml
           loses 15 % at one of its points with `transfer: apic`, 10 % with affine FLIP, and spreads 0.109 and 0.123 mm
 thin      a body, or all material, is less than THIN cells across
@@ -19,13 +21,14 @@ import numpy as np
 
 from mpm.materials import value
 from mpm.records.variables import describe
-from mpm.scene.exchange import most, programme, robin
+from mpm.scene.exchange import most, programme
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
+from mpm.scene.scales import exchanging
 from mpm.scene.shapes import shape
 from mpm.state import Run
 from mpm.warned import warning
 
-VOLUME, HEAT, ENERGY, THIN, SHORTER = 0.1, 0.01, 0.1, 2.0, 0.01
+VOLUME, HEAT, ENERGY, THIN, DEPTH, SHORTER = 0.1, 0.01, 0.1, 2.0, 0.25, 0.01
 SIDES = {"x": ("left", "right"), "r": ("axis", "outer"), "y": ("bottom", "top"), "z": ("bottom", "top")}  # of the domain, low and high
 
 
@@ -87,17 +90,37 @@ def heat(experiment: Any, run: Run) -> Iterator[str]:
         yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {100 * off / largest:.2g} % of the larger"
 
 
+def exchanged(experiment: Any, name: str) -> float:
+    """The largest beta that acts on a body, of surfaces, walls and tools; radiation's at the warmest of body and sky [W/(m2 K)]."""
+    hot = [programme(one.heat.beta) for one in (*experiment.walls.values(), *experiment.tools.values()) if getattr(one, "heat", None) is not None]
+    mine = (entry for entry in experiment.surfaces if entry.of == name)
+    betas = [one.beta for entry in mine for one in exchanging(entry, 1.0, experiment.bodies[name].temperature)]
+    return max((*betas, *map(most, hot)), default=0.0)
+
+
 def held(experiment: Any) -> Iterator[str]:
     """Bodies whose temperatures XPIC carries to a surface that is all but held."""
     if not experiment.moving or type(experiment.method.temperature).kind != "xpic":
         return
     for name, body in experiment.bodies.items():
         heat = experiment.materials[body.material].heat
-        entries = [rate for entry in experiment.surfaces if entry.of == name for rate, _ in robin(entry)]
-        hot = [programme(one.heat.beta) for one in (*experiment.walls.values(), *experiment.tools.values()) if getattr(one, "heat", None) is not None]
-        beta = max(map(most, (*entries, *hot)), default=0.0)
-        if heat is not None and beta * experiment.grid.cell > value(law(heat.kappa), body.temperature):
+        if heat is not None and exchanged(experiment, name) * experiment.grid.cell > value(law(heat.kappa), body.temperature):
             yield f"{name}: `xpic` of temperature is off by some per cent of the fall behind a surface with beta h > kappa"
+
+
+def depth(experiment: Any, run: Run) -> Iterator[str]:
+    """sqrt(kappa t/(rho alpha)) against the cell, where the surface, not the air, resists: beta depth > kappa/2."""
+    if experiment.grid.dimension == 0:
+        return
+    for name, body in experiment.bodies.items():
+        material, h = experiment.materials[body.material], experiment.grid.cell
+        if material.heat is None or not (beta := exchanged(experiment, name)):
+            continue
+        seen = {body.temperature, *(float(run.series[at][-1]) for at in ("temperature_min", "temperature_max") if at in run.series)}
+        kappa = max(value(law(material.heat.kappa), T) for T in seen)
+        deep = float(np.sqrt(kappa * run.times[-1] / (material.density * value(law(material.heat.alpha), body.temperature))))
+        if deep < DEPTH * h and beta * deep > 0.5 * kappa:
+            yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and what is exchanged is that of a layer of about a cell"
 
 
 def turned_over(series: dict[str, np.ndarray]) -> float:
@@ -157,4 +180,4 @@ def step(experiment: Any, run: Run) -> Iterator[str]:
         yield f"time.step is {wanted:.4g} s, and steps of at most {taken:.4g} s were taken, so that they end at output times and heat steps"
 
 
-LOOKS = {"volume": volume, "heat": heat, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step}
+LOOKS = {"volume": volume, "heat": heat, "depth": depth, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step}

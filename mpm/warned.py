@@ -17,6 +17,7 @@ KINDS = {
     "probe": "put the probe where material stays",
     "edge": "enlarge `grid.size`, or say under `walls` what stands there",
     "step": "a `time.step` of which `output.every`, snapshots and heat steps are whole numbers",
+    "depth": "smaller cells, a longer run, or leave the exchange out where hardly anything is conducted",
 }
 
 

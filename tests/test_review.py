@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.special import erfcx
 
 import mpm
 from mpm.review import LOOKS, review
@@ -93,6 +94,24 @@ def test_xpic_behind_a_surface_that_is_all_but_held_is_told(transfer, beta, told
     assert len(list(LOOKS["heat"](mpm.load(data), run))) == (transfer == "xpic")
 
 
+@pytest.mark.parametrize("kappa", [0.05, 5e-3, 2e-3, 5e-4, 1e-5, 1e-30])
+def test_heat_that_reaches_less_than_a_quarter_of_a_cell_is_told(kappa):
+    """A slab of ten cells, beta = 50, 80 K, 60 s, against the half space: what is off by more than a tenth has a warning, what is within 3 % has none."""
+    solid = {"density": 1000.0, "heat": {"fourier": {"kappa": kappa, "alpha": 2000.0}}}
+    data = {
+        "grid": {"dimension": 1, "size": [0.02], "cell": 0.001}, "time": {"end": 60.0}, "output": {"every": 10.0, "observables": ["heat.exchanged"]},
+        "bodies": {"s": {"shape": {"box": {"lower": [0.005], "upper": [0.015]}}, "temperature": 293.15, "material": "d"}}, "materials": {"d": solid},
+        "surfaces": [{"of": "s", "convection": {"beta": 50.0, "outside": 373.15}}],
+    }  # fmt: skip
+    run = mpm.run_point(mpm.load(data))
+    D = kappa / 2e6
+    H = 50.0 * np.sqrt(60.0 * D) / kappa
+    exact = 2 * 80.0 * kappa**2 / (50.0 * D) * (erfcx(H) - 1 + 2 * H / np.sqrt(np.pi))  # Carslaw & Jaeger 2.7: the heat that passed by a time
+    off = abs(run.finals["heat_exchanged"] / exact - 1)
+    assert run.outcome.ok and (off > 0.1 or off < 0.03) and ("depth" in kinds(run.facts["warnings"])) == (kappa <= 2e-3)
+    assert (off > 0.1) == (kappa <= 5e-4)
+
+
 def test_a_probe_whose_particle_is_gone(core):
     """A particle beyond the side that the probe hangs on."""
     experiment = scene(0.0, 4.0)
@@ -102,7 +121,7 @@ def test_a_probe_whose_particle_is_gone(core):
 
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):
