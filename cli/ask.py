@@ -37,4 +37,6 @@ def ask(
     for one in found:
         unit = "" if one.units in ("", "1") else f" {one.units}"
         say(f"{one.parameter} = {one.value:.4g}{unit} ({one.low:.4g} to {one.high:.4g}){others}")
-    say(f"from a surrogate through {surrogate.points} points, off by {surrogate.error:.3g} (95 % of the points that it was not shown)")
+    asked = sample.units[question.partition("=")[0].strip().replace(".", "_")]
+    of_answer = "" if asked in ("", "1") else f" {asked}"
+    say(f"from a surrogate through {surrogate.points} points, off by {surrogate.error:.3g}{of_answer} (95 % of the points that it was not shown)")

@@ -6,7 +6,7 @@ import typer
 from mpm_cli.options import Config, Jobs, Json, Out, Quiet, Set, Smoke, again, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.stability import calm
-from mpm_cli.sweep import RESULTS, SCHEDULER, address, route
+from mpm_cli.sweep import RESULTS, SCHEDULER, Rerun, address, route
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
 
 HOLD = "Predict this measured curve instead of fitting to it, and tell its error; repeat for more."
@@ -19,6 +19,7 @@ def fit(
     out: Out = None,
     jobs: Jobs = "auto",
     set_: Set = None,
+    rerun: Rerun = None,
     hold_out: Annotated[list[str] | None, typer.Option("--hold-out", metavar="CURVE", help=HOLD, show_default=False)] = None,
     posterior: Annotated[int, typer.Option("--posterior", metavar="STEPS", min=0, help=POSTERIOR)] = 0,
     timeout: Annotated[float | None, limit("Time limit per point, e.g. 90, 90s, 5min or 2h.")] = None,
@@ -45,7 +46,7 @@ def fit(
 
     experiment = load(config, set_, smoke)
     folder = out or default_out(experiment)
-    options = Options(jobs, timeout, time_budget=time_budget, smoke=smoke, scheduler=scheduler, shared=results == "shared")
+    options = Options(jobs, timeout, time_budget=time_budget, rerun=rerun, smoke=smoke, scheduler=scheduler, shared=results == "shared")
     talk = lambda text: say(text, as_json, quiet)  # noqa: E731
     try:
         done = run(experiment, folder, options, calm(reporter(as_json, quiet)), tuple(hold_out or ()), posterior, talk)

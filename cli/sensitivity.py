@@ -24,7 +24,8 @@ def sensitivity(
     """Tell which parameter moves which observable, with intervals, and which ranges fail.
 
     Works on any finished sweep. Failed points are left out and told; where failing depends on a parameter, intervals cover what they may be. A time that was
-    not reached counts as at least the end. Writes OUT/sensitivity.nc and .png. Needs SALib: pip install 'mpm[sensitivity]'. Exit codes: 0 ok; 2 usage.
+    not reached counts as at least the end. Writes OUT/sensitivity.nc and .png. Saltelli designs need SALib: pip install 'mpm[sensitivity]'.
+    Exit codes: 0 ok; 2 usage.
     """
     from mpm.sensitivity.api import analyse, opened, sentences, write
 

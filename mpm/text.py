@@ -2,9 +2,11 @@
 
 visible     what a terminal or a figure may show: control characters, line ends and bytes that are no UTF-8 become escapes, as `\\x1b`
 storable    what a dataset may hold: NUL and halves of surrogate pairs become escapes
+figure      a number to the second digit of its error; amount: with it
 joined      text of a config: pairs of surrogates become the letter that they stand for; ValueError for NUL and for half a pair
 """
 
+import math
 import re
 import unicodedata
 
@@ -39,3 +41,19 @@ def joined(text: str) -> str:
     if found := UNSTORABLE.search(whole):
         raise ValueError("a NUL character" if found[0] == "\0" else f"half of a surrogate pair, {escaped(found[0])}")
     return whole
+
+
+def figure(value: float, error: float) -> str:
+    """A number to the second digit of its error: `13.82`, `231000`, `2.31e+09`."""
+    if not math.isfinite(error) or error <= 0 or not math.isfinite(value):
+        return f"{value:.6g}"
+    places = 1 - math.floor(math.log10(error))
+    value = round(value, places)
+    if value and not 1e-4 <= abs(value) < 1e7:
+        return f"{value:.{max(0, places + math.floor(math.log10(abs(value))))}e}"
+    return f"{value:.{max(0, places)}f}"
+
+
+def amount(value: float, error: float) -> str:
+    """`0.41 ± 0.11`: two digits of the error."""
+    return figure(value, error) + (f" ± {figure(error, error)}" if math.isfinite(error) and error > 0 else "")

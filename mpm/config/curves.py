@@ -99,8 +99,10 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
         raise Unreadable(1, "the file is empty", "a header and rows of numbers")
     place, names, sign = header(lines, time, value)
     head, probe = lines[place][0], lines[0][1].startswith(EXPORT)
-    time = time or next((name for name in names if seconds_of(name) is not None), "")
+    named, time = bool(time), time or next((name for name in names if seconds_of(name) is not None), "")
     scale = seconds_of(time) if time in names else None
+    if scale is None and named and time in names:  # whoever names a column knows that it is the time
+        scale = TIMES.get(unit_of(time).lower(), math.nan)
     others = [name for name in names if name and seconds_of(name) is None and name != sigma]
     value = value or (others[0] if len(others) == 1 else "")
     if value not in names:

@@ -63,7 +63,17 @@ def extend(node: Node, folder: File, slot: Slot, problems: list[Problem], seen: 
             report("the base file is not a mapping", given=repr(said.value))
         return node
     base = extend(base, target.parent, slot, problems, (*seen, file))
+    brought(base, File(said.value).parent)
     return merge(base, node, slot)
+
+
+def brought(base: Node, folder: File) -> None:
+    """Files that a base names beside itself are named as from where it is extended."""
+    measured = base.child("output") and base.child("output").child("measured")
+    for curve in measured.value.values() if measured and isinstance(measured.value, dict) else ():
+        file = curve.child("file")
+        if file is not None and isinstance(file.value, str) and file.value:
+            file.value = str(folder / file.value)
 
 
 def put(root: Node, path: Path, node: Node, slot: Slot) -> None:

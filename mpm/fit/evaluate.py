@@ -1,7 +1,7 @@
 """Evaluator: scaled parameters -> records, remembered; and derivatives by differences, all of one Jacobian in one round.
 
-Differences  forward by STEP in u (a thousandth of the parameter, or of the larger end of its range), backward at the end of a range or where the point
-             failed, then shorter. The error of a derivative is of the order of STEP: it slows the search a little and does not move the optimum
+Differences  forward by `step` in u (unless told a thousandth of the parameter, or of the larger end of its range), backward at the end of a range or where
+             the point failed, then shorter. The error of a derivative is of the order of the step: it slows the search a little and does not move the optimum
 """
 
 from collections.abc import Callable, Sequence
@@ -11,8 +11,6 @@ import numpy as np
 
 from mpm.fit.problem import Problem
 from mpm.records.variables import OK
-
-STEP = 1e-3
 
 
 class NoDerivative(Exception):
@@ -45,12 +43,12 @@ class Evaluator:
 
     def differences(self, u: np.ndarray) -> list[tuple[np.ndarray, float]]:
         """For each parameter a point beside u that is a number, and how far it is."""
-        low, high = self.problem.bounds
+        (low, high), step = self.problem.bounds, self.problem.step
         found: list[tuple[np.ndarray, float] | None] = [None] * len(u)
-        first = [1.0 if u[k] + STEP <= high[k] else -1.0 for k in range(len(u))]
+        first = [1.0 if u[k] + step <= high[k] else -1.0 for k in range(len(u))]
         for turn in (1.0, -1.0, 0.1, -0.1, 0.01, -0.01):
             left = [k for k, one in enumerate(found) if one is None]
-            steps = {k: turn * first[k] * STEP for k in left}
+            steps = {k: turn * first[k] * step for k in left}
             tried = {k: u + h * np.eye(len(u))[k] for k, h in steps.items() if low[k] <= u[k] + h <= high[k]}
             for (k, point), r in zip(tried.items(), self.residuals(list(tried.values())), strict=True):
                 if r is not None:

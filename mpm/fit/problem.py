@@ -65,6 +65,7 @@ class Curve:
     weight: float
     units: str
     source: str = ""
+    late: int = 0  # measured values after the end of the run, which do not count
 
     def predict(self, record: Any) -> np.ndarray:
         """What a record says at the measured times; NaN where it does not reach them."""
@@ -92,6 +93,7 @@ class Problem:
     starts: int
     seed: int
     known_sigma: bool
+    step: float = 1e-3  # in u, of differences
 
     @property
     def names(self) -> list[str]:
@@ -141,7 +143,7 @@ def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
         parameters.append(Parameter(one.short, one.spoken, low, high, one.log, min(max(start, low), high), units, one.slot.description or one.short))
     curves = {name: curve_of(experiment, name) for name in (*names, *hold_out)}
     problem = Problem(experiment, tuple(parameters), tuple(curves[name] for name in names), tuple(curves[name] for name in hold_out), asked.starts, asked.seed,
-                      curves[names[0]].sigma is not None)  # fmt: skip
+                      curves[names[0]].sigma is not None, asked.step)  # fmt: skip
     if problem.size < len(parameters):
         raise Refused(f"{len(parameters)} parameters cannot be found from {problem.size} measured value{'s' * (problem.size != 1)}")
     return problem
@@ -160,7 +162,7 @@ def curve_of(experiment: Any, name: str) -> Curve:
         raise Refused(f"output.measured.{name}: every measured time lies after the end of the run, {experiment.time.end:g} s")
     rows = rows[~late]
     sigma = rows[:, 2] if rows.shape[1] > 2 else None if curve.sigma is None else np.full(len(rows), curve.sigma)
-    return Curve(name, variable, rows[:, 0], rows[:, 1], sigma, curve.weight, units, curve.file)
+    return Curve(name, variable, rows[:, 0], rows[:, 1], sigma, curve.weight, units, curve.file, int(late.sum()))
 
 
 def bare(experiment: Any) -> Any:

@@ -6,27 +6,15 @@ from typing import Any
 import numpy as np
 
 from mpm.records.variables import describe
+from mpm.text import amount, figure
 
 LOOSE = 0.1  # relative standard error from which parameters that move together are said not to be told apart
 PREDICTED = 0.9  # share of held-out values within their 95 % band from which a prediction is called good
 
 
-def amount(value: float, error: float) -> str:
-    """`0.41 ± 0.11`: two digits of the error."""
-    if not math.isfinite(error) or error <= 0:
-        return f"{value:.6g}"
-    if error > abs(value):
-        return f"{value:.3g} ± {error:.2g}"
-    places = max(0, 1 - math.floor(math.log10(error)))
-    if max(abs(value), error) >= 1e5 or abs(value) < 1e-3:
-        digits = max(2, math.floor(math.log10(abs(value) or error)) - math.floor(math.log10(error)) + 2)
-        return f"{value:.{digits}g} ± {error:.2g}"
-    return f"{value:.{places}f} ± {error:.{places}f}"
-
-
 def unit(units: str) -> str:
     """A unit behind a number."""
-    return "" if units in ("", "1") else f" {units}"
+    return "" if units in ("", "1") else f" {units.replace('**', '').replace('*', ' ')}"
 
 
 def limits(done: Any, k: int) -> tuple[float, float, bool, bool]:
@@ -47,7 +35,7 @@ def sentences(done: Any) -> list[str]:
         low, high, closed_low, closed_high = limits(done, k)
         text = f"{parameter.name} {amount(value, error)}{unit(parameter.units)}"
         if known.variance > 0:
-            span = f"{'' if closed_low else 'below '}{low:.4g} to {'' if closed_high else 'above '}{high:.4g}"
+            span = f"{'' if closed_low else 'below '}{figure(low, error)} to {'' if closed_high else 'above '}{figure(high, error)}"
             text += f" (95 %: {span}" + ("" if closed_low and closed_high else ": the data set no limit within the range") + ")"
         if min(value - parameter.low, parameter.high - value) <= 1e-3 * (parameter.high - parameter.low):
             text += f"; it lies at the end of its range, {parameter.low:.4g} to {parameter.high:.4g}: widen it"
@@ -64,7 +52,8 @@ def misfit(done: Any, curve: Any) -> str:
     predicted = curve.predict(done.evaluator.records([done.known.u])[0])
     rms = float(np.sqrt(np.mean((predicted - curve.values) ** 2)))
     what = describe(curve.variable, None, done.problem.experiment.output.probes).long_name
-    return f"{curve.name}: {rms:.3g}{unit(curve.units)} rms off {len(curve.values)} measured value{'s' * (len(curve.values) != 1)} ({what})"
+    late = f"; {curve.late} more after the end of the run" if curve.late else ""
+    return f"{curve.name}: {rms:.3g}{unit(curve.units)} rms off {len(curve.values)} measured value{'s' * (len(curve.values) != 1)} ({what}){late}"
 
 
 def together(done: Any, pair: Any) -> str:
@@ -101,7 +90,7 @@ def held(done: Any) -> list[str]:
     for curve in done.problem.held:
         predicted, half = band(done.evaluator, done.known, curve.predict)
         off = predicted - curve.values
-        noise = curve.sigma if curve.sigma is not None else math.sqrt(max(done.known.variance, 0.0))
+        noise = curve.sigma if curve.sigma is not None else math.sqrt(max(done.known.variance, 0.0) / curve.weight)
         within = float(np.mean(np.abs(off) <= np.sqrt(half**2 + (done.known.quantile * noise) ** 2)))
         good = "" if within >= PREDICTED else ": the model, fitted to the rest, does not predict it"
         rms = f"{float(np.sqrt(np.mean(off**2))):.3g}{unit(curve.units)} rms"

@@ -62,7 +62,7 @@ def root(done: Any) -> Group:
     times = np.concatenate([np.full(len(c.values), math.nan) if c.times is None else c.times for c in shown])
     measured, fitted = np.concatenate([curve.values for curve in shown]), np.concatenate(predicted)
     spread = math.sqrt(max(known.variance, 0.0))
-    sigma = np.concatenate([np.full(len(curve.values), spread) if curve.sigma is None else curve.sigma for curve in shown])
+    sigma = np.concatenate([np.full(len(curve.values), spread / math.sqrt(curve.weight)) if curve.sigma is None else curve.sigma for curve in shown])
     row = lambda values, words: Array(("observation",), values, {"units": "1", "long_name": words, "comment": "in the unit of its curve, curve_units"})  # noqa: E731
     return Group({
         "parameter": names(done), "parameter_": names(done, "parameter_"), "bound": Array(("bound",), texts(["lower", "upper"])),
@@ -74,6 +74,7 @@ def root(done: Any) -> Group:
         "correlation": Array(("parameter", "parameter_"), known.correlation, {"units": "1", "long_name": "correlation"}),
         "range": Array(("parameter", "bound"), np.array([(p.low, p.high) for p in problem.parameters]), about("range that was searched")),
         "parameter_units": Array(("parameter",), texts(p.units for p in problem.parameters), {"long_name": "unit"}),
+        "parameter_long_name": Array(("parameter",), texts(p.long_name for p in problem.parameters), {"long_name": "what it is"}),
         "config_path": Array(("parameter",), texts(p.path for p in problem.parameters), {"long_name": "path in the config"}),
         "curve": Array(("curve",), texts(c.name for c in shown), {"long_name": "measured curve"}),
         "curve_units": Array(("curve",), texts(c.units for c in shown), {"long_name": "unit"}),

@@ -8,6 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from mpm.plots import words
 from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, Plain, figure, styled
+from mpm.text import amount
 
 
 def draw(tree: Any) -> Any:
@@ -41,15 +42,17 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
         times, values = root.measured_time.values[mine], root.measured.values[mine]
         scale = words.scale(root.measured.values, unit, words.is_temperature(str(root["variable"].values[k])))
         colour, held = OKABE_ITO[k % len(OKABE_ITO)], bool(root.held_out.values[k])
-        said = f"{name}{', held out' if held else ''}: {root.misfit.values[k] * scale.factor:.3g} {scale.units.replace('°C', 'K')} rms"
+        said = f"{name}{', held out' if held else ''}: {with_unit(root.misfit.values[k] * scale.factor, scale.units.replace('°C', 'K'), 3)} rms"
         residual = root.residual.values[mine] * scale.factor
         if np.isnan(times).all():
-            numbers.append(f"{name}: measured {scale(values)[0]:.4g} {scale.units}, model {scale(root.fitted.values[mine])[0]:.4g}")
+            numbers.append(
+                f"{name}: measured {with_unit(scale(values)[0], scale.units, 4)}, model {with_unit(scale(root.fitted.values[mine])[0], scale.units, 4)}"
+            )
             continue
         ax.plot(clock(times), scale(values), "o", ms=4.5, mfc="white" if held else colour, mec=colour, label=said)
-        ax.set(xlabel=f"time [{clock.units}]", ylabel=f"[{scale.units}]")
+        ax.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("temperature" if unit == "K" else name, scale.units))
         left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
-        left.set(xlabel=f"time [{clock.units}]", ylabel=f"[{scale.units.replace('°C', 'K')}]")
+        left.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("difference", scale.units.replace("°C", "K")))
         if f"fitted_{name}" in curves:
             fitted, half = curves[f"fitted_{name}"].values, np.nan_to_num(curves[f"band_{name}"].values)
             ax.plot(clock(curves.time.values), scale(fitted), color=colour, lw=1.5)
@@ -61,6 +64,11 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
         ax.legend(fontsize=SMALL)
     if numbers:
         ax.text(0.02, 0.95, "\n".join(numbers), transform=ax.transAxes, va="top", fontsize=SMALL)
+
+
+def with_unit(value: float, unit: str, digits: int) -> str:
+    """`2.04 K`."""
+    return f"{words.number(value, digits)} {unit}".rstrip()
 
 
 def valley(ax: Any, root: Any, profile: Any, k: int) -> None:
@@ -87,8 +95,10 @@ def valley(ax: Any, root: Any, profile: Any, k: int) -> None:
     ax.axhline(1, color=QUIET, lw=0.8)
     ax.axvline(best, color=INK, lw=0.8)
     name, unit = str(root.parameter.values[k]), str(root.parameter_units.values[k])
-    ax.set(xlabel=f"{words.symbol(name) or name}{f' [{words.units_text(unit)}]' if unit not in ('1', '') else ''}", ylim=(0, 2.2))
-    ax.set_title(f"{words.symbol(name) or name} = {words.number(best, 4)} ± {words.number(error, 2)}")
+    said = words.symbol(name) or name.replace("_", " ")
+    long_name = str(root.parameter_long_name.values[k])
+    ax.set(xlabel=words.wrapped(words.compose(name, long_name, words.units_text(unit)), 36), ylim=(0, 2.2))
+    ax.set_title(f"{said} = {amount(best, error)}")
     if k == 0:
         ax.set_ylabel("rise of the misfit,\n1: end of the 95 % interval")
         ax.legend(fontsize=SMALL)

@@ -1,7 +1,8 @@
 """Sensitivity: which parameter moves which observable, from any finished sample, failed points and all; what distinguishes those that failed.
 
     sample      dataset -> Sample: parameters, observables, which points are ok
-    indices     Spearman, first-order indices from given data (RBD-FAST), first and total from a whole Saltelli design, with intervals
+    indices     Spearman, and first and total indices from a whole Saltelli design, with intervals
+    projection  first and total indices from given data, with intervals: polynomials, and what they miss
     failing     which ranges fail, and bounds on indices where failing depends on the parameters
     surrogate   radial basis functions through a smooth sample, with their cross-validated error; `ask`: what value gives an answer
     api         `sensitivity`: sentences and OUT/sensitivity.nc

@@ -14,6 +14,7 @@ from mpm.records.netcdf import Array, Group, to_bytes, write_whole
 from mpm.records.provenance import git_revision, versions
 from mpm.sensitivity import indices
 from mpm.sensitivity.failing import SURE, Row, bounded, table
+from mpm.sensitivity.projection import chosen, estimate
 from mpm.sensitivity.sample import Sample, read
 from mpm.sensitivity.surrogate import Surrogate, build
 from mpm.sensitivity.surrogate import indices as of_surrogate
@@ -53,7 +54,6 @@ class Found:
 
 def analyse(tree: Any, of: tuple[str, ...] = (), surrogate: bool = False, seed: int = 0) -> Found:
     """From a dataset."""
-    indices.salib()
     sample = read(tree)
     if unknown := [name for name in of if name.replace(".", "_") not in sample.outputs]:
         raise Refused(f"--of {unknown[0]}: there is no such observable that varies; here are {', '.join(sample.outputs)}")
@@ -66,7 +66,7 @@ def analyse(tree: Any, of: tuple[str, ...] = (), surrogate: bool = False, seed: 
         if late.any():
             y = np.where(late, sample.late[name], y)
             unreached[name] = table(sample.parameters[:], sample.unit[ok], late[ok])
-        effects.append(effects_of(sample, name, y, int(late.sum()), failed, surrogate and not late.any(), seed))
+        effects.append(effects_of(sample, name, y, int(late.sum()), failed, surrogate, seed))
     return Found(sample, failed, effects, unreached)
 
 
@@ -88,14 +88,14 @@ def effects_of(sample: Sample, name: str, y: np.ndarray, late: int, failed: list
     if sample.base and not biased:
         first, total, rows = indices.saltelli(y, sample.base, x.shape[1], seed)
         return Effects(name, int(known.sum()), late, ranks, first, total, f"Saltelli's design, {rows} of {sample.base} rows whole")
-    if surrogate:
+    if surrogate and not late:
         made = build(x[known], y[known], seed)
         first, total = of_surrogate(made, x.shape[1], seed=seed)
         return Effects(name, int(known.sum()), late, ranks, first, total, "surrogate", made)
-    if biased:
-        first = bounded(x, y, known, lambda a, b: indices.first(a, b, seed), seed)
-        return Effects(name, int(known.sum()), late, ranks, first, None, "RBD-FAST, bounds over what the failed points may be")
-    return Effects(name, int(known.sum()), late, ranks, indices.first(x[known], y[known], seed), None, "RBD-FAST")
+    found = bounded(x, y, known, seed) if biased else estimate(chosen(x[known], y[known]), y[known], seed)
+    how = f"polynomials that predict {100 * max(found.explained, 0):.3g} % of the variance" + (", bounds over what the failed points may be" if biased else "")
+    how += ", no surrogate: it would smooth the edge of what is never reached" if surrogate else ""
+    return Effects(name, int(known.sum()), late, ranks, found.first, found.total, how)
 
 
 def sentences(found: Found) -> list[str]:
@@ -113,17 +113,25 @@ def sentences(found: Found) -> list[str]:
         parts = []
         for k in np.argsort(-strongest[:, 0]):
             value, low, high = (one.first if one.first is not None else one.spearman)[k]
-            more = f", total {one.total[k][0]:.2f}" if one.total is not None else ""
+            least = 0 if one.first is not None else -1
+            more = f"; total {span(one.total[k], 0)}" if one.total is not None else ""
             seen = low > SHOWN if one.first is not None else low * high > 0
-            parts.append(f"{sample.parameters[k].name} {value:.2f} ({max(low, -1):.2f} to {min(high, 1):.2f}{more})" + ("" if seen else ", no effect shown"))
-        what = "share of the variance" if one.first is not None else "rank correlation"
-        said.append(f"{one.name}, {what}: {'; '.join(parts)} [{one.how}]")
+            parts.append(f"{sample.parameters[k].name} {span((value, low, high), least)}{more}" + ("" if seen else ", no effect of its own shown"))
+        what = "shares of the variance" if one.first is not None else "rank correlations"
+        said.append(f"{one.name}, {what} ({one.how}):")
+        said += [f"  {part}" for part in parts]
         if one.surrogate is not None:
             made = one.surrogate
             trust = ": too little to trust" if made.explained < 0.9 else ""
             said.append(f"  the surrogate of {one.name}, {made.points} points, predicts {100 * made.explained:.3g} % of the variance of points that it was not "
                         f"shown, off by {made.rms:.3g} {sample.units[one.name]} rms{trust}")  # fmt: skip
     return said
+
+
+def span(index: tuple[float, float, float], least: float) -> str:
+    """`0.31 (0.29 to 0.33)`; an end beyond what an index can be is cut."""
+    value, low, high = (min(max(float(end), least), 1.0) + 0.0 for end in index)
+    return f"{value:.2f} ({low:.2f} to {high:.2f})"
 
 
 def where(rows: list[Row], what: str) -> list[str]:
@@ -148,6 +156,7 @@ def write(found: Found, path: Path) -> Path:
     about = {"spearman": "rank correlation", "first": "first-order index", "total": "total index"}
     variables = {
         "parameter": Array(("parameter",), text(names)), "observable": Array(("observable",), text(one.name for one in effects)),
+        "observable_long_name": Array(("observable",), text(sample.long_names[one.name] for one in effects), {"long_name": "what it is"}),
         "of": Array(("of",), text(["value", "lower", "upper"])), "third": Array(("third",), text(["lower", "middle", "upper"])),
         **{kind: Array(("observable", "parameter", "of"), stack(kind), said(f"{words}, 95 % interval")) for kind, words in about.items()},
         "how": Array(("observable",), text(one.how for one in effects), {"long_name": "how the indices were made"}),

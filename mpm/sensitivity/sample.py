@@ -47,6 +47,7 @@ class Sample:
     parameters: list[Parameter]
     outputs: dict[str, np.ndarray]
     units: dict[str, str]
+    long_names: dict[str, str]
     ok: np.ndarray
     reasons: np.ndarray
     late: dict[str, float]
@@ -91,8 +92,9 @@ def read(tree: Any) -> Sample:
     design = sweep.get("sample") or {}
     base = int(design["saltelli"]["count"]) if "saltelli" in design and len(dims) == 1 else 0
     units = {name: root[name].attrs.get("units", "1") for name in outputs}
+    long_names = {name: root[name].attrs.get("long_name", name.replace("_", " ")) for name in outputs}
     reasons = np.array([str(text).partition(":")[0] for text in flat(root["error"])])
-    return Sample(parameters, outputs, units, status == OK, reasons, late, base, root.attrs.get("title", ""), config)
+    return Sample(parameters, outputs, units, long_names, status == OK, reasons, late, base, root.attrs.get("title", ""), config)
 
 
 def logarithmic(row: Any, sweep: dict, name: str, path: str) -> bool:

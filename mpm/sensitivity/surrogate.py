@@ -50,12 +50,17 @@ def build(unit: np.ndarray, y: np.ndarray, seed: int = 0) -> Surrogate:
 
 
 def indices(surrogate: Surrogate, parameters: int, base: int = 4096, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """First and total indices of the surrogate."""
+    """First and total indices, (value, lower, upper); the ends reach as far as what the surrogate does not explain can move them (Cauchy and Schwarz)."""
     from mpm.sensitivity.indices import saltelli
     from mpm.sweep.designs import unit_sample
 
     unit = unit_sample("saltelli", base * (parameters + 2), parameters, seed)
-    return saltelli(surrogate(unit), base, parameters, seed)[:2]
+    first, total, _ = saltelli(surrogate(unit), base, parameters, seed)
+    missed = max(0.0, 1 - surrogate.explained)
+    for rows, share in ((first, first[:, 0]), (total, 1 - total[:, 0])):
+        reach = 2 * np.sqrt(np.clip(share, 0, 1) * missed) + missed
+        rows[:, 1:] += np.stack([-reach, reach], axis=1)
+    return first, total
 
 
 @dataclass(frozen=True)

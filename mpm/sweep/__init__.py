@@ -20,6 +20,7 @@ Further files
     lock            one writer a folder, held with flock in OUT/lock
     ragged          one snapshot of particles out of the ragged rows of a dataset, as a plain table
     ranges          the values of each parameter along its dimension, from lists, even ranges and samples
+    contour         where to look next for the line on which an answer crosses a level
     refine          new points where the answer bends, crosses a level, or ok meets failed
     report          what an engine tells while it works
     result          what a sweep came to

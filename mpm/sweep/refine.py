@@ -1,7 +1,8 @@
 """Refine: `sweep: {axes: ..., refine: {of: ..., until: 1 %, points: 200}}` puts new points where the answer bends, where it crosses `level`, and where ok meets
-failed, on one or two axes. Every point is one of an ordinary sweep, along the dimension `point`; the same command goes on.
+failed, on one or two axes. Every point is one of an ordinary sweep, along the dimension `point` (one axis: its own); the same command goes on.
 
-The axes' own values span cells. A cell is split in halves (quarters), which adds the points between its corners, when
+On two axes with a `level`, while every point is ok: see `contour`. Else the axes' own values span cells. A cell is split in halves (quarters), which adds the
+points between its corners, when
     level given   the corners lie on both sides of it, and the crossing is not yet known to `until` of the ranges: where the cell it came from foretold its new
                   points to within that distance, given how steep the answer is, it is
     no level      its new points were foretold (linearly from the corners) worse than `until` of the answer's spread
@@ -21,6 +22,7 @@ import numpy as np
 from mpm.config.names import Names
 from mpm.config.vary import Vary
 from mpm.records.variables import OK, dataset_name
+from mpm.sweep.contour import follow
 from mpm.sweep.engine import Options
 from mpm.sweep.lock import Refused
 from mpm.sweep.queue import Points, exit_code, warned
@@ -74,6 +76,17 @@ class Mesh:
     @property
     def spans(self) -> np.ndarray:
         return np.array([axis[-1] - axis[0] for axis in self.grid])
+
+    @property
+    def follows(self) -> bool:
+        """Whether a line is followed rather than cells split."""
+        return self.asked.level is not None and len(self.grid) == 2 and all(map(math.isfinite, self.known.values()))
+
+    def on_line(self) -> list[Place]:
+        """Points that a line on which the answer crosses the level still wants."""
+        low = np.array([axis[0] for axis in self.grid])
+        found = follow((np.array([*self.known]) - low) / self.spans, np.array([*self.known.values()]), self.asked.level, self.asked.until)
+        return [place for place in (tuple(map(rounded, row)) for row in low + found * self.spans) if place not in self.known]
 
     def value(self, place: Place) -> tuple[float, ...]:
         """A point in SI."""
@@ -148,7 +161,7 @@ def refine(experiment: Any, out: Path, options: Options, reporter: Reporter) -> 
     """All rounds; the dataset at the end, also of what there is where it was stopped."""
     began, mesh, stopped = time.monotonic(), read(experiment), ""
     name, asked = dataset_name(mesh.asked.of), experiment.sweep.refine
-    rounds = Rounds(experiment, mesh.names, out, options, reporter, derive=experiment.sweep.derive)
+    rounds = Rounds(experiment, mesh.names, out, options, reporter, experiment.sweep.derive, axis=len(mesh.names) == 1)
     with rounds:
         wanted = mesh.begin()
         pending: list[Cell] = []
@@ -161,10 +174,11 @@ def refine(experiment: Any, out: Path, options: Options, reporter: Reporter) -> 
                 wanted, pending = choose(mesh)
         except Stopped as error:
             stopped = error.why
-        left = sum(mesh.wants(cell) for cell in mesh.cells) if not stopped else 0
+        left = 0 if stopped else len(mesh.on_line()) if mesh.follows else sum(mesh.wants(cell) for cell in mesh.cells)
         if left:
             used = f"{len(mesh.known)} of {asked.points} points are used"
-            reporter.note(f"sweep.refine: {used}, and {left} cells are not yet as fine as asked; more `points` would do")
+            what = "place" if mesh.follows else "cell"
+            reporter.note(f"sweep.refine: {used}, and {left} {what}{'s are' if left > 1 else ' is'} not yet as fine as asked; more `points` would do")
         plan, found = rounds.collect()
     points = Points.of(plan)
     lines, _ = rounds.store.lines(points.ids)
@@ -174,6 +188,8 @@ def refine(experiment: Any, out: Path, options: Options, reporter: Reporter) -> 
 
 def choose(mesh: Mesh) -> tuple[list[Place], list[Cell]]:
     """New points, and the cells that they split; the worst known cells first, as many as there are points for."""
+    if mesh.follows:
+        return mesh.on_line()[: max(0, mesh.asked.points - len(mesh.known))], []
     while True:
         wanted: dict[Place, None] = {}
         pending: list[Cell] = []

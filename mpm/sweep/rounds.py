@@ -55,10 +55,10 @@ class Rounds:
     """Points over `paths` of an experiment that has no sweep of its own."""
 
     def __init__(self, experiment: Any, paths: Sequence[str], out: Path, options: Options | None = None, reporter: Reporter | None = None,
-                 derive: dict[str, str] | None = None):  # fmt: skip
+                 derive: dict[str, str] | None = None, axis: bool = False):  # fmt: skip
         self.experiment, self.paths = experiment.model_copy(update={"sweep": None}), tuple(paths)
         self.experiment._placed(experiment)
-        self.derive = derive or {}
+        self.derive, self.axis = derive or {}, axis  # axis: the one path is a dimension of its own in the dataset
         self.options, self.reporter = options or Options(), reporter or Reporter()
         self.store, self.ran, self.asked, self.compiling = Store(out), 0, {}, 0.0
         self.executor: Any = None
@@ -88,7 +88,10 @@ class Rounds:
 
     def sweep(self, points: Sequence[Sequence[float]]) -> Any:
         """The experiment with these points alone."""
-        listed = Sweep(points=tuple(dict(zip(self.paths, map(float, point), strict=True)) for point in points), derive=self.derive)
+        return self.with_sweep(Sweep(points=tuple(dict(zip(self.paths, map(float, point), strict=True)) for point in points), derive=self.derive))
+
+    def with_sweep(self, listed: Sweep) -> Any:
+        """The experiment with a sweep."""
         made = self.experiment.model_copy(update={"sweep": listed})
         made._placed(self.experiment)
         return made
@@ -149,7 +152,8 @@ class Rounds:
 
     def all(self) -> Any:
         """The experiment with every point that was asked for, each once."""
-        return self.sweep(list(self.asked.values()))
+        points = list(self.asked.values())
+        return self.with_sweep(Sweep(axes={self.paths[0]: [value for (value,) in sorted(points)]}, derive=self.derive)) if self.axis else self.sweep(points)
 
     def collect(self) -> tuple[Any, dict[str, int]]:
         """OUT/sweep.nc of every point asked for: the plan, and counts by status."""

@@ -210,3 +210,14 @@ def test_what_is_wrong_with_a_whole_file_names_the_file_once(tmp_path):
     with pytest.raises(mpm.ConfigError) as told:
         curve(tmp_path, "", BASE.replace("curve.csv", "pipe.csv"))
     assert "output.measured.middle.file: pipe.csv: this is no plain file" in str(told.value)
+
+
+def test_a_curve_of_a_base_lies_beside_the_base(tmp_path):
+    (tmp_path / "bases").mkdir()
+    written(tmp_path / "bases", "1,26.85\n2,36.85\n")
+    path = tmp_path / "mine.yaml"
+    path.write_text("extends: bases/scene.yaml\ntime: {end: 200}\n")
+    assert [t for t, _ in mpm.load(path).output.measured["middle"].samples] == [60, 120]
+    (tmp_path / "bases" / "curve.csv").unlink()
+    with pytest.raises(mpm.ConfigError, match=r"bases/scene.yaml:7:.*cannot read 'bases/curve.csv'"):
+        mpm.load(path)

@@ -177,3 +177,27 @@ def test_the_covariance_is_that_of_linear_least_squares(truth, rng):
     j = np.array(rows).T / 0.5
     assert done.known.covariance_si == pytest.approx(np.linalg.inv(j.T @ j), rel=0.05)
     assert identify(done.evaluator, done.searches.best.u).values == pytest.approx(best)
+
+
+def posterior(experiment, steps):
+    pytest.importorskip("emcee")
+    problem = read(experiment)
+    told = []
+    return solve(problem, InProcess(problem, bare(experiment)), steps, told.append), told
+
+
+def test_a_posterior_is_the_same_sample_each_time_and_lies_within_the_ranges(truth):
+    experiment = config(noisy(truth, np.random.default_rng(7), 0.5), {"kappa": {"log": [0.1, 2]}})
+    (first, told), (again, _) = posterior(experiment, 8), posterior(experiment, 8)
+    assert np.array_equal(first.chain, again.chain) and first.chain.shape == (12 * 6, 1)
+    assert np.all((first.chain >= 0.1) & (first.chain <= 2))
+    assert any("too few steps" in text for text in told)
+
+
+@pytest.mark.slow
+def test_the_posteriors_spread_is_that_of_the_covariance_where_the_model_is_nearly_linear(truth):
+    done, told = posterior(config(noisy(truth, np.random.default_rng(7), 0.2)), 600)
+    assert np.std(np.log(done.chain), axis=0) == pytest.approx(done.known.error / done.known.values, rel=0.15)
+    assert np.mean(done.chain, axis=0) == pytest.approx(done.known.values, rel=0.05)
+    assert np.corrcoef(np.log(done.chain).T) == pytest.approx(done.known.correlation, abs=0.03)
+    assert not any("too few steps" in text for text in told), told
