@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.contact.block import advance_block, work_arrays
+from mpm.contact.block import advance_block, clear, work_arrays
 from mpm.contact.insync import in_sync
 from mpm.guards import Guards, explain
 from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
@@ -210,7 +210,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
             return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
         left = until - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
-        dt, block = left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count)
+        dt, block = left / count, clear(scene, clock, left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count))
         cut = count == 1 and left < step * (1 - 1e-9)
         binding = "heat pace or output" if cut else "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
         clock.bound[binding] = clock.bound.get(binding, 0) + block

@@ -19,6 +19,7 @@ from mpm.state import Thermal
 from mpm.transfer import columns, wants_change
 
 AHEAD = 1.5  # of what the fastest particle and gravity let a particle move in a block
+FEWEST = 4  # steps of a block that is cut short so that nothing comes near in it
 
 
 def work_arrays(scene):
@@ -32,11 +33,26 @@ def work_arrays(scene):
     return nodes, force, (np.zeros((2, 3, 2), np.int64), new_blocks(n)), np.zeros((rows, n if warm else 0))
 
 
+def reach(scene, clock, span: float) -> float:
+    """How far a particle or a tool may move within `span` [m]."""
+    speed, g = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity))
+    return AHEAD * max(speed + g * span, scene.meeting.pace(clock.time, span)) * span
+
+
+def clear(scene, clock, dt: float, steps: int) -> int:
+    """How many of `steps` steps of dt to take at once: fewer where that surely brings nothing near, so that contacts are computed, and compiled, only then."""
+    met, fewer = scene.meeting, steps // 2
+    if met is None or not met.near(reach(scene, clock, dt * steps), clock.time):
+        return steps
+    while fewer >= FEWEST and met.left < reach(scene, clock, dt * fewer):
+        fewer //= 2
+    return fewer if fewer >= FEWEST else steps
+
+
 def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     """One block of `steps` steps of dt; clock.reports tells of it. Not ok where a meeting was not foreseen."""
-    speed, g, met = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity)), scene.meeting
-    tool = 0.0 if met is None else met.pace(clock.time, dt * steps)
-    clock.touching = met is not None and met.near(AHEAD * max(speed + g * dt * steps, tool) * dt * steps, clock.time)
+    met = scene.meeting
+    clock.touching = met is not None and met.near(reach(scene, clock, dt * steps), clock.time)
     if clock.touching and met.unforeseen is not None:
         return outcome(met.unforeseen[0], time=clock.time * scene.scale, step=clock.steps, detail=f"({scene.names[met.unforeseen[1]]})")
     scene.order.refresh()
@@ -45,7 +61,7 @@ def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:
-        met.left -= max(travel, tool * dt * steps)
+        met.left -= max(travel, met.pace(clock.time, dt * steps) * dt * steps)
     return outcome(COMPLETED)
 
 
