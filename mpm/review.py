@@ -11,20 +11,23 @@ thin      a body, or all material, is less than THIN cells across
 probe     a probe has no value
 step      steps are shorter than `time.step` says by more than SHORTER, cut to end at output times or at heat steps
 edge      material comes within a cell of a side of the domain that `walls` does not name: a wall without friction stands there
+near      bodies that do not move lie less than a cell apart, and do not touch
 Cost      a few microseconds a point: series are looked at once, at the end.
 """
 
 from collections.abc import Iterator
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from mpm.materials import value
 from mpm.records.variables import describe
+from mpm.rigid.touching import TOUCH
 from mpm.scene.exchange import most, programme
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.scales import exchanging
-from mpm.scene.shapes import shape
+from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 from mpm.warned import warning
 
@@ -174,10 +177,24 @@ def edge(experiment: Any, run: Run) -> Iterator[str]:
                 yield f"material is within a cell of the side {side} from t = {run.times[near[0]]:.4g} s on, where the domain ends with a wall without friction"
 
 
+def near(experiment: Any, run: Run) -> Iterator[str]:
+    if experiment.moving or len(experiment.bodies) < 2:
+        return
+    h, D = experiment.grid.cell, experiment.grid.dimension
+    edges = [np.arange(round(size / h) + 1) * h for size in experiment.grid.size]
+    for (one, a), (two, b) in combinations(((name, shape(body.shape, D)) for name, body in experiment.bodies.items()), 2):
+        (low, high), (least, most) = a.bounds(), b.bounds()
+        if np.any(np.maximum(low, least) - np.minimum(high, most) >= h):
+            continue
+        gap = float(np.min(b.distance(cut_quadrature(a, edges, 2)[1].x))) / h
+        if TOUCH < gap < 1 - 1e-9:
+            yield f"{one} and {two} lie {gap:.2g} cells apart, and pass no heat"
+
+
 def step(experiment: Any, run: Run) -> Iterator[str]:
     wanted, taken = experiment.time.step, run.finals.get("step_longest")
     if isinstance(wanted, float) and taken is not None and taken < wanted * (1 - SHORTER):
         yield f"time.step is {wanted:.4g} s, and steps of at most {taken:.4g} s were taken, so that they end at output times and heat steps"
 
 
-LOOKS = {"volume": volume, "heat": heat, "depth": depth, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step}
+LOOKS = {"volume": volume, "heat": heat, "depth": depth, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step, "near": near}

@@ -18,6 +18,7 @@ KINDS = {
     "edge": "enlarge `grid.size`, or say under `walls` what stands there",
     "step": "a `time.step` of which `output.every`, snapshots and heat steps are whole numbers",
     "depth": "smaller cells, a longer run, or leave the exchange out where hardly anything is conducted",
+    "near": "let them meet for heat to pass, or take cells smaller than the gap",
 }
 
 

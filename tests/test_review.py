@@ -112,6 +112,21 @@ def test_heat_that_reaches_less_than_a_quarter_of_a_cell_is_told(kappa):
     assert (off > 0.1) == (kappa <= 5e-4)
 
 
+@pytest.mark.parametrize("D", [1, 2])
+@pytest.mark.parametrize(("gap", "told"), [(0.0, False), (0.02, False), (0.4, True), (0.95, True), (1.0, False), (3.0, False)])
+def test_bodies_that_lie_less_than_a_cell_apart_are_told(gap, told, D):
+    """Heat passes where they touch, within a twentieth of a cell, and nowhere else."""
+    box = [{"lower": [low] * D, "upper": [high] + [0.008] * (D - 1)} for low, high in ((0.0, 0.006), (0.006 + gap * 1e-3, 0.016))]
+    for part in box:
+        part["lower"][1:] = [0.0] * (D - 1)
+    bodies = {name: {"shape": {"box": part}, "temperature": T, "material": "d"} for name, part, T in zip("ab", box, (370.0, 290.0), strict=True)}
+    material = {"density": 1000.0, "heat": {"fourier": {"kappa": 0.5, "alpha": 2000.0}}}
+    grid = {"dimension": D, "size": [0.02] * D, "cell": 0.001}
+    run = mpm.run_point(mpm.load({"grid": grid, "bodies": bodies, "materials": {"d": material}, "time": {"end": 60.0}, "output": {"every": 60.0}}))
+    passes = run.finals["temperature_max"] < 369.0
+    assert run.outcome.ok and passes == (gap < 0.05) and ("near" in kinds(run.facts["warnings"])) is told
+
+
 def test_a_probe_whose_particle_is_gone(core):
     """A particle beyond the side that the probe hangs on."""
     experiment = scene(0.0, 4.0)
@@ -121,7 +136,7 @@ def test_a_probe_whose_particle_is_gone(core):
 
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):
