@@ -122,7 +122,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     """
     began = time.perf_counter()
     clock, recorder, guards = Clock(scene), Recorder(scene, getattr(keeper, "frames", None)), Guards(scene)
-    buffers = None if scene.references else work_arrays(scene)
+    work = None if scene.references else work_arrays(scene)
     result, before = outcome(COMPLETED), keeper.found if keeper is not None else None
     if before is not None:
         clock.recall(before["clock"])
@@ -148,11 +148,11 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         return stop
 
     for end, told in stops(scene.times, merged(scene.watch.snapshots, jumps(scene.surroundings, scene.times[-1])))[clock.output :]:
-        result = interval(scene, clock, recorder, guards, buffers, end, look)
+        result = interval(scene, clock, recorder, guards, work, end, look)
         if not result.ok:
             break
         show_all(scene)
-        with in_sync(scene, clock, buffers):
+        with in_sync(scene, clock, work):
             (recorder.record if told else recorder.frame)(scene, clock)
             result = guards.frame(scene, clock, recorder.series) if told else result
         if not result.ok:
@@ -165,10 +165,10 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     return run
 
 
-def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end: float, look) -> Outcome:
+def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: float, look) -> Outcome:
     """Advance to the output time `end`; from within the interval where the run was cut there."""
     if scene.implicit is not None:
-        return scene.implicit.advance(scene, clock, guards, buffers, end, warm_bodies, recorder, look)
+        return scene.implicit.advance(scene, clock, guards, work, end, warm_bodies, recorder, look)
     cut = clock.parts > 0
     if not cut:
         scene.order.refresh()
@@ -181,15 +181,15 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
         begun = clock.start + (end - clock.start) * clock.part / clock.parts
         later = scene.meeting is not None and scene.meeting.warms  # heat that passes by touch follows the motion that says who touched
         if not (cut or later):
-            result = warm_bodies(scene, clock, buffers, begun, until - begun, now)
+            result = warm_bodies(scene, clock, work, begun, until - begun, now)
             if not result.ok:
                 return result
             recorder.watch(scene, until)
         cut = False
-        result = march(scene, clock, guards, buffers, until, look)
+        result = march(scene, clock, guards, work, until, look)
         now = present_limits(scene, clock)
         if result.ok and later:
-            result = warm_bodies(scene, clock, buffers, begun, until - begun, now)
+            result = warm_bodies(scene, clock, work, begun, until - begun, now)
             recorder.watch(scene, until)
         if not result.ok:
             return result
@@ -198,7 +198,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, buffers, end:
     return guards.whole(scene, clock)
 
 
-def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, look) -> Outcome:
+def march(scene: Scene, clock: Clock, guards: Guards, work, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     while until - clock.time > 1e-12 * until:
         if not (sound := guards.block(scene, clock)).ok:
@@ -216,7 +216,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, buffers, until: float, loo
         clock.bound[binding] = clock.bound.get(binding, 0) + block
         clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
         clock.swell = max(float(report[SWELL]) for report in clock.reports)
-        if (taken := (advance_references if scene.references else advance_block)(scene, clock, buffers, dt, block)) is not None and not taken.ok:
+        if (taken := (advance_references if scene.references else advance_block)(scene, clock, work, dt, block)) is not None and not taken.ok:
             return taken
         clock.gather(dt)
         if (failed := next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)) is not None:

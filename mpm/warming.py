@@ -21,17 +21,17 @@ from mpm.total.drive import present_limits, warm_references
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
 
 
-def warm_bodies(scene, clock, buffers, begun: float, dt: float, now: Limits) -> Outcome:
+def warm_bodies(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome:
     """One heat step from `begun` on of every body that has heat, and what sets by it."""
     held = warm_energy(scene.space, scene.bodies)
-    result = conduct(scene, clock, buffers, begun, dt, now)
+    result = conduct(scene, clock, work, begun, dt, now)
     if result.ok:
         set_bodies(scene.bodies, dt)
         clock.softened += warm_energy(scene.space, scene.bodies) - held
     return result
 
 
-def conduct(scene, clock, buffers, begun: float, dt: float, now: Limits) -> Outcome:
+def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome:
     """The heat step: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
     around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
     if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
@@ -50,7 +50,7 @@ def conduct(scene, clock, buffers, begun: float, dt: float, now: Limits) -> Outc
     kinds = [scene.walls] * len(scene.bodies) if met is None else met.walls
     trio = zip(scene.bodies, scene.surroundings, kinds, strict=True)
     mirrors = np.stack([walls if one is None else one.mirrors(scene.space, body, walls) for body, one, walls in trio])
-    before = [(lost_to_grid(scene, body, buffers[3], walls), bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None)
+    before = [(lost_to_grid(scene, body, work.rows, walls), bounds_of(body, seen) if scene.repair and isinstance(body.thermal, Thermal) else None)
               for body, walls, seen in zip(scene.bodies, mirrors, clock.seen, strict=True)]  # fmt: skip
     joined = ()
     if met is not None and (links := met.heat_links(mirrors, dt)) is not None:
@@ -63,19 +63,19 @@ def conduct(scene, clock, buffers, begun: float, dt: float, now: Limits) -> Outc
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:
-            gained, count = heat_implicit(scene.space, body, buffers[3], walls, dt, scene.heat.order, scene.heat.tolerance, *back)
+            gained, count = heat_implicit(scene.space, body, work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, *back)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, body, buffers[3], walls, dt, substeps, *back)
+            gained = heat_chebyshev(scene.space, body, work.rows, walls, dt, substeps, *back)
         else:
-            gained = heat_step(scene.space, body, buffers[3][:EXPLICIT_ROWS], walls, dt, substeps, *back)
+            gained = heat_step(scene.space, body, work.rows[:EXPLICIT_ROWS], walls, dt, substeps, *back)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)
         if between is not None:
-            moved, left = keep_between(scene.space, body, buffers[3], walls, *between)
+            moved, left = keep_between(scene.space, body, work.rows, walls, *between)
             clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
     if met is not None:
         met.warmed()

@@ -1,6 +1,7 @@
 """The arrays that a run works on, and one block of its steps by whichever kernel it needs: slabs, one thread, or with contacts."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from mpm.contact.step import Pace
 from mpm.integrate.explicit import advance
 from mpm.integrate.heat_chebyshev import ROWS as STABILISED_ROWS
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
+from mpm.integrate.step_parts import Buffers, method_of
 from mpm.integrate.step_threaded import advance_slabs
 from mpm.integrate.strain import PARTICLE, SPEED
 from mpm.integrate.timestep import WAVE, limits
@@ -22,15 +24,22 @@ AHEAD = 1.5  # of what the fastest particle and gravity let a particle move in a
 FEWEST = 4  # steps of a block that is cut short so that nothing comes near in it
 
 
-def work_arrays(scene):
-    """Nodes: two buffers of momentum and mass, two of forces where the transfer wants them, their boxes and blocks, scalars where there is heat."""
+class Work(NamedTuple):
+    """What a run works on beside its state; all zero between blocks."""
+
+    buffers: Buffers
+    rows: np.ndarray  # (rows, n) scalars of the nodes, for heat steps; of no nodes without heat
+
+
+def work_arrays(scene) -> Work:
+    """The arrays of a scene."""
     n, D = math.prod(extents(scene.space)), directions(scene.space)
     dtype = scene.bodies[0].particles.x.dtype
     nodes = aligned((2, n, columns(D)), dtype)
     force = aligned((2, n if wants_change(scene.scheme) else 0, columns(D)), dtype)
     warm = any(isinstance(body.thermal, Thermal) for body in scene.bodies)
     rows = EXPLICIT_ROWS if scene.heat.kind == "explicit" else STABILISED_ROWS
-    return nodes, force, (np.zeros((2, 3, 2), np.int64), new_blocks(n)), np.zeros((rows, n if warm else 0))
+    return Work(Buffers(nodes, force, np.zeros((2, 3, 2), np.int64), new_blocks(n)), np.zeros((rows, n if warm else 0)))
 
 
 def reach(scene, clock, span: float) -> float:
@@ -49,7 +58,7 @@ def clear(scene, clock, dt: float, steps: int) -> int:
     return fewer if fewer >= FEWEST else steps
 
 
-def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
+def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
     """One block of `steps` steps of dt; clock.reports tells of it. Not ok where a meeting was not foreseen."""
     met = scene.meeting
     clock.touching = met is not None and met.near(reach(scene, clock, dt * steps), clock.time)
@@ -57,7 +66,7 @@ def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
         return outcome(met.unforeseen[0], time=clock.time * scene.scale, step=clock.steps, detail=f"({scene.names[met.unforeseen[1]]})")
     scene.order.refresh()
     kick, clock.lag = clock.lag + 0.5 * dt, 0.5 * dt
-    astray = push(scene, clock, buffers, float(dt), float(kick), steps, float(dt), clock.reports)
+    astray = push(scene, clock, work, float(dt), float(kick), steps, float(dt), clock.reports)
     travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:
@@ -65,18 +74,16 @@ def advance_block(scene, clock, buffers, dt: float, steps: int) -> Outcome:
     return outcome(COMPLETED)
 
 
-def push(scene, clock, buffers, dt: float, kick: float, steps: int, ahead: float, reports) -> bool:
+def push(scene, clock, work: Work, dt: float, kick: float, steps: int, ahead: float, reports) -> bool:
     """`steps` steps of dt, whose first impulse acts for `kick` and whose contacts are such that nothing overlaps `ahead` later. Whether a chunk was late."""
-    nodes, force, (boxes, blocks), _ = buffers
     wave = limits(scene.space, directions(scene.space), scene.bodies, clock.reports).mechanical["elastic wave"] if clock.touching else 0.0
     reports[:] = 0.0
     reports[:, PARTICLE] = -1
     if clock.touching:
         pace = Pace(dt, kick, ahead, steps, clock.steps, WAVE * scene.space.h / wave)
-        scene.meeting.advance(scene, buffers, pace, clock.time, reports)
+        scene.meeting.advance(scene, work.buffers, pace, clock.time, reports)
     elif scene.order.sliced:
-        return advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, clock.steps, reports)
+        return advance_slabs(scene, method_of(scene), work.buffers, dt, kick, steps, clock.steps, reports)
     else:
-        around = scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports
-        advance(scene.space, scene.gradient, scene.scheme, scene.bodies, nodes, force, boxes, blocks, *around)
+        advance(method_of(scene), scene.bodies, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
     return False

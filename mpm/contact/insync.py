@@ -21,7 +21,7 @@ STILL = 1e-9  # of a step: how far the steps go that move nothing
 
 
 @contextmanager
-def in_sync(scene, clock, buffers):
+def in_sync(scene, clock, work):
     """Within it, particles carry the velocities of the present. Bodies in the total frame always do."""
     if clock.lag == 0 or scene.references:
         yield
@@ -34,7 +34,7 @@ def in_sync(scene, clock, buffers):
     reach, dt, reports = scene.order.reach.copy(), 2 * clock.lag, clock.reports.copy()
     for kick in (0.0, clock.lag):
         reports[:] = 0.0
-        push(scene, clock, buffers, STILL * dt, kick, 1, dt, reports)
+        push(scene, clock, work, STILL * dt, kick, 1, dt, reports)
         if reports[:, CODE].any():
             raise ArithmeticError("a state that was found sound takes no step")  # no state does that: the guards look at it first
         if kick == 0.0:

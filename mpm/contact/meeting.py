@@ -16,6 +16,7 @@ from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
 from mpm.contact.step import Grids, Pace, Touching, advance_touching
 from mpm.contact.tools import NoTools
+from mpm.integrate.step_parts import method_of
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.lanes import aligned
@@ -159,12 +160,11 @@ class Meeting:
         return min(found), unforeseen
 
     def advance(self, scene, buffers, pace: Pace, time: float, reports) -> None:
-        """One block of steps from `time` on in which something may be near; buffers: nodes, force, (boxes, blocks)."""
-        nodes, force, (boxes, blocks), *_ = buffers
-        grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (nodes[None], force[None], boxes[None], blocks[None])))
+        """One block of steps from `time` on in which something may be near; the nodes of a single field are `buffers`."""
+        grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (array[None] for array in buffers)))
         if self.drive is not None:
             self.drive.lay(time, pace.ahead, pace.steps)
-        advance_touching(scene.space, scene.gradient, scene.scheme, scene.bodies, self.touching, grids, scene.gravity, pace, reports)
+        advance_touching(method_of(scene), scene.bodies, self.touching, grids, scene.gravity, pace, reports)
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

@@ -16,11 +16,12 @@ from mpm.contact.solve import Problem, press
 from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import weigh
 from mpm.integrate.explicit import clean, pass_body, update
-from mpm.integrate.fbar import any_averages, average_all
+from mpm.integrate.fbar import average_all
 from mpm.integrate.grid_heating import compress_all
+from mpm.integrate.step_parts import Buffers, Moment, scratch
 from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
-from mpm.transfer import new_chunk, uses_basis_gradient, wants_change
+from mpm.transfer import wants_change
 
 TOUCH = 0.05  # cells: a gap below it touches
 
@@ -67,59 +68,63 @@ class Pace(NamedTuple):
 
 
 @kernel
-def advance_touching(space, gradient, scheme, bodies, touching, grids, gravity, pace, reports):
+def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
     """As explicit.advance with the nodes of every field."""
-    nodes, force, boxes, blocks, dt, steps = grids.nodes, grids.force, grids.boxes, grids.blocks, pace.dt, pace.steps
-    chunk = new_chunk(gravity.shape[0], nodes[0], uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    change, shape, fields = np.zeros_like(chunk.v), extents(space), len(touching.walls)
-    skin = new_skin(gravity.shape[0], touching.first)
+    shape, fields, dt, steps, first = extents(method.space), len(touching.walls), pace.dt, pace.steps, field_buffers(grids, 0)
+    chunk, skin = scratch(method, bodies, first.nodes), new_skin(gravity.shape[0], touching.first)
     for f in range(fields):
-        empty(shape, boxes[f, 0])
-        empty(shape, boxes[f, 1])
+        empty(shape, grids.boxes[f, 0])
+        empty(shape, grids.boxes[f, 1])
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2
         acts = pace.kick if step == 0 else dt
         if not opening:
             for f in range(fields):
-                update(space, scheme, nodes[f, now], force[f, now], boxes[f, now], blocks[f, now], touching.walls[f], gravity, acts)
-            here, there, walls = nodes[0], force[0], touching.walls[0]
+                update(method, field_buffers(grids, f), now, touching.walls[f], gravity, acts)
             if fields == 1:
-                sharpen(scheme, space, gradient, bodies, chunk, here[now], there[now], here[1 - now], there[1 - now], boxes[0, now], blocks[0, now], walls)
+                sharpen(method.scheme, method, bodies, chunk, first, now, touching.walls[0])
             place_tools(touching.tools, step, pace.ahead, acts)
-            meet(space, gradient, scheme, bodies, touching, skin, grids, now, pace)
+            meet(method, bodies, touching, skin, grids, now, pace)
             move_tools(touching.tools, dt)
             if fields == 1:
-                average_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt)
-                compress_all(space, gradient, bodies, chunk, here[now], boxes[0, now], walls, dt, reports)
-        ok, b, push = True, 0, pace.kick if opening else dt
+                nodes, box, walls = first.nodes[now], first.boxes[now], touching.walls[0]
+                average_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt)
+                compress_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt, reports)
+        moment = Moment(now, pace.kick if opening else dt, step, pace.begun, opening, last, steps >= 0)  # marks are always wanted here
+        ok, b = True, 0
         for body in literal_unroll(bodies):
-            f = touching.fields[b]
-            ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes[f], force[f], boxes[f], blocks[f], True, now, push, step, pace.begun,
-                                  opening, last, reports[b])  # fmt: skip
+            ok = ok and pass_body(method, body, chunk, field_buffers(grids, touching.fields[b]), moment, reports[b])
             b += 1
         if not ok:
             return
         if not opening:
             for f in range(fields):
-                clean(space, scheme, nodes[f, now], force[f, now], boxes[f, now], blocks[f, now])
+                clean(method, field_buffers(grids, f), now)
 
 
 @kernel
-def meet(space, gradient, scheme, bodies, touching, skin, grids, now, pace):
+def field_buffers(grids, f):
+    """The nodes of one field."""
+    return Buffers(grids.nodes[f], grids.force[f], grids.boxes[f], grids.blocks[f])
+
+
+@kernel
+def meet(method, bodies, touching, skin, grids, now, pace):
     """One step's contacts, on the nodes of buffer `now`; and the books of it."""
+    space = method.space
     lay_skins(space, bodies, skin)
     contacts, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
     if count == 0:
         touching.warm[:] = 0.0
         return
     D, shape, nodes, force = directions(space), extents(space), grids.nodes[:, now], grids.force[:, now]
-    at, coef = weigh(space, gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
+    at, coef = weigh(space, method.gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
     problem = Problem(contacts, at, coef, touching.fields, nodes, force, touching.tools, np.zeros((count, D)))
     press(space, problem, count, pace.ahead, pace.sound, touching.warm, touching.rows)
     if keep_books(space, touching, skin, contacts, problem.impulse, pace.dt):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
-            if wants_change(scheme):
+            if wants_change(method.scheme):
                 unfold(force[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
 
 

@@ -61,8 +61,8 @@ class Implicit:
         return advance(*given)
 
 
-def advance(scene, clock, guards, buffers, until: float, warm, recorder, look) -> Outcome:
-    """Steps up to `until`. warm(scene, clock, buffers, begun, dt, limits) is the run's heat step; look() -> bool asks whether to stop."""
+def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> Outcome:
+    """Steps up to `until`. warm(scene, clock, work, begun, dt, limits) is the run's heat step; look() -> bool asks whether to stop."""
     clock.told = clock.told or scene.implicit.begin()
     while until - clock.time > 1e-12 * until:
         if not (sound := guards.block(scene, clock)).ok:
@@ -70,7 +70,7 @@ def advance(scene, clock, guards, buffers, until: float, warm, recorder, look) -
         told, left = clock.told, until - clock.time
         count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)))
         dt, before = left / count, keep(scene, clock)
-        error, found = one_step(scene, clock, buffers, dt, warm)
+        error, found = one_step(scene, clock, work, dt, warm)
         if not found.ok or too_far(scene, told, error):
             told = put_back(scene, clock, before)
             if not found.ok and (dt * CUT < LEAST * scene.implicit.first or found.kind not in CURED or told["swift"] >= PATIENCE):
@@ -90,14 +90,14 @@ def advance(scene, clock, guards, buffers, until: float, warm, recorder, look) -
     return guards.whole(scene, clock)
 
 
-def one_step(scene, clock, buffers, dt: float, warm) -> tuple[float, Outcome]:
+def one_step(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
     """Heat, then mechanics; the other way round where heat passes by touch, as motion says who touches."""
     later = scene.meeting is not None and scene.meeting.warms
     now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    error, found = 0.0, outcome(COMPLETED) if later else warm(scene, clock, buffers, clock.time, dt, now)
+    error, found = 0.0, outcome(COMPLETED) if later else warm(scene, clock, work, clock.time, dt, now)
     if found.ok:
         error, found = mechanical_step(scene, clock, dt)
-    return error, warm(scene, clock, buffers, clock.time, dt, now) if found.ok and later else found
+    return error, warm(scene, clock, work, clock.time, dt, now) if found.ok and later else found
 
 
 def factor(how: Implicit, error: float) -> float:

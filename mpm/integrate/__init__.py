@@ -21,6 +21,7 @@ Further files
     grid_heating         elastic heating as the source document has it
     sorting              particles in the order of the nodes that they touch, where that pays
     state_check          what a block of steps begins from, looked at as its opening reads it
+    step_parts           what a mechanical step works with: the method, the nodes, and where in a block of steps it is
     step_threaded        the mechanical step of a large scene in slabs, by threads
     stress_hencky        what the particles of a chunk answer their trial strains
     stress_neo_hookean   neo-Hookean response, eight particles at once

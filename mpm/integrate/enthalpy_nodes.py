@@ -16,7 +16,7 @@ import numpy as np
 
 from mpm.basis import stencil
 from mpm.boundary import directions, extents
-from mpm.boundary.walls import fold, unfold
+from mpm.boundary.walls import clear, fold, unfold
 from mpm.heat.local import rise
 from mpm.integrate.heat_implicit import drop_ghosts, inside
 from mpm.integrate.heat_matrix import flat, nodes_of
@@ -36,6 +36,28 @@ class Pairs(NamedTuple):
     mass: np.ndarray  # (N, M) m w [kg]
     seen: np.ndarray  # (N, M) theta_p + e_ip, absolute [K]
     own: np.ndarray  # (N,) H(theta_p) [J/kg]
+
+
+class HotNodes(NamedTuple):
+    """The K nodes with capacity, as a heat step finds them."""
+
+    walls: np.ndarray  # (3, 2) kinds
+    shape: tuple  # of the grid
+    box: np.ndarray  # (3, 2) nodes that the body touches
+    each: np.ndarray  # (K,) their places among all nodes
+    weight: np.ndarray  # (K,) capacity [J/K]
+    base: np.ndarray  # (K,) temperature less zero [K]
+    pairs: Pairs
+    close: float  # what counts as the same temperature [K]
+    ok: bool  # whether a temperature was found for each
+
+
+class Taken(NamedTuple):
+    """What the nodes have taken up since."""
+
+    change: np.ndarray  # (K,) u [K]
+    held: np.ndarray  # (K,) E(u) [J]
+    slope: np.ndarray  # (K,) dE/du [J/K]
 
 
 @kernel
@@ -172,7 +194,7 @@ def spread(each, values, field):
 
 @kernel
 def opened(space, body, thermal, capacity, theta, scratch, walls, blend, work):
-    """Nodal temperatures in `theta`, and (box, each, weight, base, pairs, close, ok): the nodes with capacity, that capacity, their temperatures."""
+    """The nodes with capacity as a heat step finds them, and their temperatures in `theta`."""
     shape, x, m = extents(space), body.particles.x, body.particles.m
     box = reach(space, x)
     scatter_heat(space, x, m, thermal, capacity, theta, work)
@@ -187,17 +209,37 @@ def opened(space, body, thermal, capacity, theta, scratch, walls, blend, work):
     ok = blend == 0.0 or level(thermal.alpha, pairs, close, blend, base)
     spread(each, base, theta)
     unfold(theta.reshape(-1, 1), 0, shape, box, walls)
-    return box, each, weight, base, pairs, close, ok
+    return HotNodes(walls, shape, box, each, weight, base, pairs, close, ok)
 
 
 @kernel
-def closed(space, body, thermal, walls, box, each, base, pairs, close, total, change, stage, affine, work):
-    """Hand out `total`, from the guess `change`; `stage` is left with the nodal temperatures of the end. False where a node does not settle."""
-    held, slope = np.empty(len(each)), np.empty(len(each))
-    if not settle(thermal.alpha, pairs, close, total, change, held, slope):
+def guess(on):
+    """Nothing taken up yet."""
+    K = len(on.each)
+    return Taken(np.zeros(K), np.zeros(K), np.zeros(K))
+
+
+@kernel
+def show(on, taken, field):
+    """Nodal temperatures, mirrored at walls."""
+    spread(on.each, on.base + taken.change, field)
+    unfold(field.reshape(-1, 1), 0, on.shape, on.box, on.walls)
+
+
+@kernel
+def closed(space, body, thermal, on, heat, taken, stage, affine, work):
+    """Hand out `heat`, from the guess `taken`; `stage` is left with the nodal temperatures of the end. False where a node does not settle."""
+    if not settle(thermal.alpha, on.pairs, on.close, heat, taken.change, taken.held, taken.slope):
         return False
-    spread(each, base + change, stage)
-    unfold(stage.reshape(-1, 1), 0, extents(space), box, walls)
-    hand_out(thermal.alpha, pairs, body.particles.m, thermal, change, total - held)
+    show(on, taken, stage)
+    hand_out(thermal.alpha, on.pairs, body.particles.m, thermal, taken.change, heat - taken.held)
     incline(space, body.particles.x, thermal, stage, affine, work)
     return True
+
+
+@kernel
+def wiped(on, nodes):
+    """Every field of `nodes` is zero again."""
+    for field in range(nodes.shape[0]):
+        used = on.box.copy()
+        clear(nodes[field].reshape(-1, 1), on.shape, used)

@@ -10,12 +10,14 @@ Iterations: 2 to 5 of Newton a step, one while no bump is near.
 Good values  order 2, tolerance 1e-9; a bump as narrow as one likes.   Fails when: ITERATIONS of Newton pass (returned, not hidden).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from mpm.boundary import directions, extents
-from mpm.boundary.walls import clear, fold, unfold
+from mpm.boundary import directions
+from mpm.boundary.walls import fold
 from mpm.heat.exchange import meet
-from mpm.integrate.enthalpy_nodes import closed, contents, opened, settle, spread
+from mpm.integrate.enthalpy_nodes import closed, contents, guess, opened, settle, show, spread, wiped
 from mpm.integrate.heat_chebyshev import recurrence, stabilised_by_law
 from mpm.integrate.heat_implicit import GAMMA, conductances, implicit_by_law, load, wipe
 from mpm.integrate.heat_matrix import conjugate_gradients, matrix
@@ -31,35 +33,51 @@ INNER = 1e-4  # of conjugate gradients: Newton repeats them
 STALLED = 1e-6  # of the heat that moves: where round-off ends the iteration above its tolerance
 
 
+class Flux(NamedTuple):
+    """f(theta) of a step: conduction, and exchange at the surface."""
+
+    flow: np.ndarray  # (N,) V kappa of the particles
+    pieces: tuple  # owner, area, offset of the surface's pieces
+    met: np.ndarray  # (3, pieces) beta, outside, q
+
+
+class Scratch(NamedTuple):
+    """Fields over all nodes, and of a chunk."""
+
+    diagonal: np.ndarray
+    stage: np.ndarray  # temperatures
+    rate: np.ndarray  # dt f; comes and goes as zero
+    work: np.ndarray
+
+
 @kernel
-def miss(space, x, flow, pieces, met, walls, shape, box, each, base, change, held, total, dt, stage, rate, work, weight, out):
-    """out = E - total - dt f(theta + u); its norm squared, weighted as temperature. rate comes and goes as zero."""
-    spread(each, base + change, stage)
-    unfold(stage.reshape(-1, 1), 0, shape, box, walls)
-    load(space, x, flow, pieces, met, stage, rate, dt, 1.0, work)
-    fold(rate.reshape(-1, 1), 0, shape, box, walls)
+def miss(space, x, flux, on, taken, total, dt, scratch, out):
+    """out = E - total - dt f(theta + u); its norm squared, weighted as temperature."""
+    show(on, taken, scratch.stage)
+    load(space, x, flux.flow, flux.pieces, flux.met, scratch.stage, scratch.rate, dt, 1.0, scratch.work)
+    fold(scratch.rate.reshape(-1, 1), 0, on.shape, on.box, on.walls)
     size = 0.0
-    for k in range(len(each)):
-        out[k] = held[k] - total[k] - rate[each[k]]
-    for k in range(len(each)):  # a sum apart from stores keeps its bits, whichever arrays are neighbours
-        size += out[k] * out[k] / weight[k]
-    wipe(rate, shape, box)
+    for k in range(len(on.each)):
+        out[k] = taken.held[k] - total[k] - scratch.rate[on.each[k]]
+    for k in range(len(on.each)):  # a sum apart from stores keeps its bits, whichever arrays are neighbours
+        size += out[k] * out[k] / on.weight[k]
+    wipe(scratch.rate, on.shape, on.box)
     return size
 
 
 @kernel
-def newton(space, x, alpha, pairs, close, flow, pieces, met, walls, shape, box, each, base, total, dt, tolerance, weight, change, held, slope,
-           diagonal, stage, rate, work):  # fmt: skip
-    """u with E(u) = total + dt f(theta + u), from the guess in `change`; iterations of conjugate gradients, at least one a Newton step, or -1."""
-    K, count = len(each), 0
-    short, step, before, was, taken = np.empty(K), np.empty(K), np.empty(K), np.empty(K), np.empty(K)
-    contents(alpha, pairs, change, np.full(K, True), held, slope)
-    size = miss(space, x, flow, pieces, met, walls, shape, box, each, base, change, held, total, dt, stage, rate, work, weight, short)
-    spread(each, slope, diagonal)
-    rows, columns, between = matrix(space, shape, x, flow, pieces, met, diagonal, each, dt, walls)
+def newton(space, x, alpha, flux, on, taken, total, dt, tolerance, scratch):
+    """u with E(u) = total + dt f(theta + u), from the guess in `taken`; iterations of conjugate gradients, at least one a Newton step, or -1."""
+    K, count = len(on.each), 0
+    change, held, slope = taken.change, taken.held, taken.slope
+    short, step, before, was, linear = np.empty(K), np.empty(K), np.empty(K), np.empty(K), np.empty(K)
+    contents(alpha, on.pairs, change, np.full(K, True), held, slope)
+    size = miss(space, x, flux, on, taken, total, dt, scratch, short)
+    spread(on.each, slope, scratch.diagonal)
+    rows, columns, between = matrix(space, on.shape, x, flux.flow, flux.pieces, flux.met, scratch.diagonal, on.each, dt, on.walls)
     others = rows[:, 0] - slope
     for _ in range(ITERATIONS):
-        moved = np.sum(held * held / weight)
+        moved = np.sum(held * held / on.weight)
         if size <= tolerance * tolerance * moved or size == 0.0:
             return count
         rows[:, 0] = others + slope
@@ -69,12 +87,12 @@ def newton(space, x, alpha, pairs, close, flow, pieces, met, walls, shape, box, 
         count += max(done, 1)
         before[:], was[:] = change, held
         share, better = 1.0, False
-        taken[:] = slope * step
+        linear[:] = slope * step
         for _ in range(HALVINGS):
             change[:] = before + share * step
-            if not settle(alpha, pairs, close, was + share * taken, change, held, slope):
+            if not settle(alpha, on.pairs, on.close, was + share * linear, change, held, slope):
                 return -1
-            new = miss(space, x, flow, pieces, met, walls, shape, box, each, base, change, held, total, dt, stage, rate, work, weight, short)
+            new = miss(space, x, flux, on, taken, total, dt, scratch, short)
             if new < size:
                 better = True
                 break
@@ -86,15 +104,14 @@ def newton(space, x, alpha, pairs, close, flow, pieces, met, walls, shape, box, 
 
 
 def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
-    shape, x = extents(space), body.particles.x
-    capacity, theta, diagonal, stage, rate = nodes[0], nodes[1], nodes[2], nodes[4], nodes[5]
+    x, capacity, theta, diagonal, stage, rate = body.particles.x, nodes[0], nodes[1], nodes[2], nodes[4], nodes[5]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    box, each, weight, base, pairs, close, ok = opened(space, body, thermal, capacity, theta, diagonal, walls, blend, work)
-    K = len(each)
-    total, change, held, slope = np.zeros(K), np.zeros(K), np.zeros(K), np.zeros(K)
+    on = opened(space, body, thermal, capacity, theta, diagonal, walls, blend, work)
+    total, taken, scratch, ok = np.zeros(len(on.each)), guess(on), Scratch(diagonal, stage, rate, work), on.ok
     flow = conductances(space, body, thermal, theta, work)
     pieces = place(body.surface, space, body)
-    met = np.empty((3, pieces[0].shape[0]))  # beta, outside, q of every piece
+    met = np.empty((3, pieces[0].shape[0]))
+    flux = Flux(flow, pieces, met)
     gained, iterations = 0.0, 0
     gamma = 1.0 if order == 1 else GAMMA
     for k in range(order):
@@ -104,87 +121,76 @@ def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, ord
         for s in range(met.shape[1]):
             there = temperature_at(space, x, pieces[0], pieces[2], s, theta, work)
             met[0, s], met[1, s], met[2, s] = meet(body.surface, s, there, thermal.zero, 1.0 if last else gamma)
-        count = newton(space, x, alpha, pairs, close, flow, pieces, met, walls, shape, box, each, base, total, gamma * dt, tolerance, weight, change,
-                       held, slope, diagonal, stage, rate, work)  # fmt: skip
+        count = newton(space, x, alpha, flux, on, taken, total, gamma * dt, tolerance, scratch)
         ok = count >= 0
         iterations += count
         gained += load(space, x, flow, pieces, met, stage, rate, dt * (gamma if last else 1.0 - gamma), 1.0, work)
-        collect(rate, shape, box, walls, each, total)
-    ok = ok and closed(space, body, thermal, walls, box, each, base, pairs, close, total, change, stage, affine, work)
-    for field in range(nodes.shape[0]):
-        used = box.copy()
-        clear(nodes[field].reshape(-1, 1), shape, used)
+        collect(rate, on, total)
+    ok = ok and closed(space, body, thermal, on, total, taken, stage, affine, work)
+    wiped(on, nodes)
     return (gained, iterations) if ok else (0.0, -1)
 
 
 @kernel
-def collect(rate, shape, box, walls, each, heat):
+def collect(rate, on, heat):
     """heat += rate, rate = 0."""
-    fold(rate.reshape(-1, 1), 0, shape, box, walls)
-    for k in range(len(each)):
-        heat[k] += rate[each[k]]
-    wipe(rate, shape, box)
+    fold(rate.reshape(-1, 1), 0, on.shape, on.box, on.walls)
+    for k in range(len(on.each)):
+        heat[k] += rate[on.each[k]]
+    wipe(rate, on.shape, on.box)
 
 
 @kernel
-def look_up(alpha, pairs, close, walls, shape, box, each, base, heat, change, held, slope, stage):
+def look_up(alpha, on, heat, taken, stage):
     """Nodal temperatures in `stage` of nodes that have taken up `heat`; NaN, which the guards tell of, where one does not settle."""
-    if not settle(alpha, pairs, close, heat, change, held, slope):
-        change[:] = np.nan
-    spread(each, base + change, stage)
-    unfold(stage.reshape(-1, 1), 0, shape, box, walls)
+    if not settle(alpha, on.pairs, on.close, heat, taken.change, taken.held, taken.slope):
+        taken.change[:] = np.nan
+    show(on, taken, stage)
 
 
 def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
-    shape = extents(space)
     capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    box, each, _, base, pairs, close, _ = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
-    K = len(each)
-    heat, change, held, slope = np.zeros(K), np.zeros(K), np.zeros(K), np.zeros(K)
+    on = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
+    heat, taken = np.zeros(len(on.each)), guess(on)
     gained, pieces = 0.0, place(body.surface, space, body)
     for k in range(substeps):
-        look_up(alpha, pairs, close, walls, shape, box, each, base, heat, change, held, slope, stage)
+        look_up(alpha, on, heat, taken, stage)
         conduct(space, body, thermal, stage, rate, dt / substeps, work)
         gained += exchange(body, space, pieces, thermal, stage, rate, dt / substeps, (k + 0.5) / substeps, work)
-        collect(rate, shape, box, walls, each, heat)
-    if not closed(space, body, thermal, walls, box, each, base, pairs, close, heat, change, stage, affine, work):
+        collect(rate, on, heat)
+    if not closed(space, body, thermal, on, heat, taken, stage, affine, work):
         thermal.theta[:] = np.nan
-    for field in range(nodes.shape[0]):
-        used = box.copy()
-        clear(nodes[field].reshape(-1, 1), shape, used)
+    wiped(on, nodes)
     return gained
 
 
 def stabilised_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
-    shape = extents(space)
     capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    box, each, _, base, pairs, close, _ = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
-    K = len(each)
-    change, held, slope, first = np.zeros(K), np.zeros(K), np.zeros(K), np.zeros(K)
+    on = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
+    K = len(on.each)
+    taken, first = guess(on), np.zeros(K)
     pieces = place(body.surface, space, body)
     conduct(space, body, thermal, theta, rate, dt, work)
     q0 = exchange(body, space, pieces, thermal, theta, rate, dt, 0.0, work)
-    collect(rate, shape, box, walls, each, first)
+    collect(rate, on, first)
     terms = recurrence(count)
     before, last = np.zeros(K), terms[0, 0] * first
     q_before, q_last, t_before, t_last = 0.0, terms[0, 0] * q0, 0.0, terms[0, 0]
     for k in range(1, count):
         mu, nu, step, lag = terms[k, 0], terms[k, 1], terms[k, 2], terms[k, 3]
-        look_up(alpha, pairs, close, walls, shape, box, each, base, last, change, held, slope, stage)
+        look_up(alpha, on, last, taken, stage)
         conduct(space, body, thermal, stage, rate, dt, work)
-        taken = exchange(body, space, pieces, thermal, stage, rate, dt, t_last, work)
+        gain = exchange(body, space, pieces, thermal, stage, rate, dt, t_last, work)
         flown = np.zeros(K)
-        collect(rate, shape, box, walls, each, flown)
+        collect(rate, on, flown)
         before, last = last, mu * last + nu * before + step * flown - lag * first
-        q_before, q_last = q_last, mu * q_last + nu * q_before + step * taken - lag * q0
+        q_before, q_last = q_last, mu * q_last + nu * q_before + step * gain - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
-    if not closed(space, body, thermal, walls, box, each, base, pairs, close, last, change, stage, affine, work):
+    if not closed(space, body, thermal, on, last, taken, stage, affine, work):
         thermal.theta[:] = np.nan
-    for field in range(nodes.shape[0]):
-        used = box.copy()
-        clear(nodes[field].reshape(-1, 1), shape, used)
+    wiped(on, nodes)
     return q_last
 
 

@@ -16,10 +16,11 @@ from mpm.boundary.blocks import BLOCK, forget, mark_box, run, span, thin, wipe
 from mpm.boundary.walls import empty, fold, impose, unfold
 from mpm.integrate.active_nodes import reaches, touch
 from mpm.integrate.dither import dither
-from mpm.integrate.fbar import any_averages, average_all, relax
+from mpm.integrate.fbar import average_all, relax
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.particle_update import respond
 from mpm.integrate.state_check import sound
+from mpm.integrate.step_parts import Moment, scratch
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
 from mpm.integrate.traction import act
 from mpm.integrate.xpic import sharpen
@@ -27,91 +28,88 @@ from mpm.jit import kernel
 from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE, UNSOUND
 from mpm.state import PAD
-from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, new_chunk, pick_up, spread, uses_basis_gradient, wants_change
+from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, pick_up, spread, wants_change
 
 
 @kernel
-def advance(space, gradient, scheme, bodies, nodes, force, boxes, blocks, walls, gravity, dt, kick, steps, begun, reports):
+def advance(method, bodies, buffers, walls, gravity, dt, kick, steps, begun, reports):
     """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run. kick: how long the impulse of the first acts (contact/insync.py).
 
-    nodes, force: (2, n, columns(D)), zero before and after; force of no nodes unless the scheme wants the change of velocity apart.
-    boxes (2, 3, 2), blocks (2, marks), none set before and after, walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see particle_update.py.
-    Returns early where a particle fails.
+    walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see particle_update.py. Returns early where a particle fails.
     """
-    chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    change = np.zeros_like(chunk.v)
-    shape = extents(space)
-    empty(shape, boxes[0])
-    empty(shape, boxes[1])
-    sparse = True
+    shape, chunk, sparse = extents(method.space), scratch(method, bodies, buffers.nodes), True
+    empty(shape, buffers.boxes[0])
+    empty(shape, buffers.boxes[1])
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick if step == 0 else dt, reports)
-        push = kick if opening else dt
-        if not pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, push, step, begun, opening, last, reports):
+            on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, dt, kick if step == 0 else dt, reports)
+        moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
+        if not pass_all(method, bodies, chunk, buffers, moment, reports):
             return
         if opening:
-            sparse = thin(shape, boxes[1 - now], blocks[1 - now])
+            sparse = thin(shape, buffers.boxes[1 - now], buffers.blocks[1 - now])
         else:
-            clean(space, scheme, nodes[now], force[now], boxes[now], blocks[now])
+            clean(method, buffers, now)
 
 
 @kernel
-def clean(space, scheme, nodes, force, box, blocks):
+def clean(method, buffers, now):
     """Zero the nodes that were used, for the scatter after next; empty their box and take their marks away."""
-    shape = extents(space)
-    if wants_change(scheme):
-        wipe(force, shape, box, blocks)
-    wipe(nodes, shape, box, blocks)
+    shape, box, blocks = extents(method.space), buffers.boxes[now], buffers.blocks[now]
+    if wants_change(method.scheme):
+        wipe(buffers.force[now], shape, box, blocks)
+    wipe(buffers.nodes[now], shape, box, blocks)
     forget(shape, box, blocks)
     empty(shape, box)
 
 
 @kernel
-def on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports):
+def on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, dt, kick, reports):
     """What is done to the nodes of buffer `now` between scatter and gather; `kick` is the time that the impulse acts."""
+    space, gradient, nodes, box = method.space, method.gradient, buffers.nodes[now], buffers.boxes[now]
     if not sparse:
-        mark_box(blocks[now], directions(space), extents(space), boxes[now])
-    update(space, scheme, nodes[now], force[now], boxes[now], blocks[now], walls, gravity, kick)
-    sharpen(scheme, space, gradient, bodies, chunk, nodes[now], force[now], nodes[1 - now], force[1 - now], boxes[now], blocks[now], walls)
-    average_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt)
-    compress_all(space, gradient, bodies, chunk, nodes[now], boxes[now], walls, dt, reports)
+        mark_box(buffers.blocks[now], directions(space), extents(space), box)
+    update(method, buffers, now, walls, gravity, kick)
+    sharpen(method.scheme, method, bodies, chunk, buffers, now, walls)
+    average_all(space, gradient, bodies, chunk, nodes, box, walls, dt)
+    compress_all(space, gradient, bodies, chunk, nodes, box, walls, dt, reports)
 
 
 @kernel
-def pass_all(space, gradient, scheme, bodies, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, reports):
+def pass_all(method, bodies, chunk, buffers, moment, reports):
     """Gather from buffer `now` (unless it is the opening of a run), respond, and scatter on to the other (unless it is the last step).
 
     False where a particle fails.
     """
     ok, b = True, 0
     for body in literal_unroll(bodies):  # bodies of several types: Numba unrolls a loop without exits only
-        ok = ok and pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last,
-                              reports[b])  # fmt: skip
+        ok = ok and pass_body(method, body, chunk, buffers, moment, reports[b])
         b += 1
     return ok
 
 
 @kernel
-def pass_body(space, gradient, scheme, body, chunk, change, nodes, force, boxes, blocks, sparse, now, dt, step, begun, opening, last, report):
+def pass_body(method, body, chunk, buffers, moment, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
-    x, here, there, push, pushed, box = body.particles.x, nodes[now], nodes[1 - now], force[now], force[1 - now], boxes[1 - now]
-    reach, shake = reaches(space, 0 if last else x.shape[0]), dither(space, x, begun + step)
+    space, x, now, last = method.space, body.particles.x, moment.now, moment.last
+    here, push, there, pushed = buffers.nodes[now], buffers.force[now], buffers.nodes[1 - now], buffers.force[1 - now]
+    reach, shake = reaches(space, 0 if last else x.shape[0]), dither(space, x, moment.begun + moment.step)
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        if not step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, shake, opening, last, report):
+        if not step_chunk(method, body, chunk, here, push, moment, first, count, shake, report):
             return False
         if not last:
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK])
-    touch(space, x, 0, x.shape[0], reach, box, blocks[1 - now], sparse)
+            spread(method.scheme, space, method.gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK])
+    touch(space, x, 0, x.shape[0], reach, buffers.boxes[1 - now], buffers.blocks[1 - now], moment.sparse)
     return True
 
 
 @kernel(inline=True)
-def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, count, dt, step, shake, opening, last, report):
+def step_chunk(method, body, chunk, here, push, moment, first, count, shake, report):
     """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
-    x, past = body.particles.x, 0.0 if opening else dt
+    space, gradient, x, opening, dt = method.space, method.gradient, body.particles.x, moment.opening, moment.dt
+    past = 0.0 if opening else dt
     if opening and not sound(space, body, first, count):
         report[CODE], report[PARTICLE] = UNSOUND, first
         return False
@@ -119,24 +117,27 @@ def step_chunk(space, gradient, scheme, body, chunk, change, here, push, first, 
     if opening:
         fetch(body.particles, first, chunk, count)
     else:
-        collect(scheme, space, gradient, x, first, chunk, count, here, push, change)
-        carry(scheme, body.particles, first, chunk, count, change, last)
+        collect(method.scheme, space, gradient, x, first, chunk, count, here, push)
+        carry(method.scheme, body.particles, first, chunk, count, moment.last)
         relax(body.locking, space, x, first, chunk, count, dt)
         move(space, x, chunk, first, count, dt, shake, report)
     if report[CODE] == 0.0:
         respond(space, gradient, body, chunk, first, count, past, dt, report)
     if report[CODE] != 0.0:
-        report[STEP] = max(step, 0)
+        report[STEP] = max(moment.step, 0)
         return False
     act(body.source, body, chunk, first, count, past, dt, report)
     return True
 
 
 @kernel
-def update(space, scheme, nodes, force, box, blocks, walls, gravity, dt):
-    """Nodes: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold. Where the change is wanted, force becomes v_i+ - v_i."""
-    shape = extents(space)
-    D = directions(space)
+def update(method, buffers, now, walls, gravity, dt):
+    """Nodes of buffer `now`: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold.
+
+    Where the change is wanted, force becomes v_i+ - v_i.
+    """
+    scheme, shape, D = method.scheme, extents(method.space), directions(method.space)
+    nodes, force, box, blocks = buffers.nodes[now], buffers.force[now], buffers.boxes[now], buffers.blocks[now]
     folded = box.copy()
     if wants_change(scheme):
         fold(force, D, shape, folded, walls, blocks)

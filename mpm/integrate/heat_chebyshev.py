@@ -106,7 +106,7 @@ def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, co
     fold(rate.reshape(-1, 1), 0, shape, box, walls)
     terms = recurrence(count)
     mu = terms[0, 0]
-    combine(shape, box, capacity, rate, first, start, start, start, last, 0.0, 0.0, 1.0, 0.0, mu, True)
+    combine(shape, box, capacity, rate, first, (start, start, start), (0.0, 0.0, 1.0, 0.0, mu), last, True)
     q_before, q_last, t_before, t_last = 0.0, mu * q0, 0.0, mu
     for k in range(1, count):
         mu, nu, step, lag = terms[k, 0], terms[k, 1], terms[k, 2], terms[k, 3]
@@ -115,7 +115,7 @@ def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, co
         taken = exchange(body, space, pieces, thermal, last, rate, dt, t_last, work)
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
         older = start if k == 1 else before
-        combine(shape, box, capacity, rate, first, last, older, start, theta, mu, nu, 1.0 - mu - nu, step, -lag, False)
+        combine(shape, box, capacity, rate, first, (last, older, start), (mu, nu, 1.0 - mu - nu, step, -lag), theta, False)
         before, last, theta = last, theta, before
         q_before, q_last = q_last, mu * q_last + nu * q_before + step * taken - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
@@ -128,8 +128,10 @@ def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, co
 
 
 @kernel
-def combine(shape, box, capacity, rate, first, a, b, c, out, of_a, of_b, of_c, of_rate, of_first, opening):
-    """out = of_a a + of_b b + of_c c + of_rate rate/C + of_first first, and rate is cleared; opening: first = rate/C before."""
+def combine(shape, box, capacity, rate, first, fields, shares, out, opening):
+    """out = the sum of `shares` of the three `fields`, of rate/C and of `first`, and rate is cleared; opening: first = rate/C before."""
+    a, b, c = fields
+    of_a, of_b, of_c, of_rate, of_first = shares
     for i in range(box[0, 0], box[0, 1]):
         for j in range(box[1, 0], box[1, 1]):
             row = (i * shape[1] + j) * shape[2]

@@ -82,7 +82,7 @@ def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, orde
             met[0, s], met[1, s], met[2, s] = meet(body.surface, s, there, thermal.zero, part)
         if k == 1:  # base = theta + (1 - gamma) dt f_1/C
             combine(base, theta, total, capacity, 1.0, shape, box)
-        count = solve(space, x, flow, pieces, met, capacity, base, gamma * dt, tolerance, walls, box, stage, rate, work)
+        count = solve(space, x, (flow, pieces, met), (capacity, base, stage, rate), gamma * dt, tolerance, walls, box, work)
         if count < 0:
             break
         iterations += count
@@ -163,9 +163,12 @@ def load(space, x, flow, pieces, met, theta, rate, dt, sources, work):
 
 
 @kernel
-def solve(space, x, flow, pieces, met, capacity, base, dt, tolerance, walls, box, theta, rate, work):
-    """theta with C (theta - base) = dt f(theta) on the nodes with capacity, from `base`; iterations, or -1. rate comes and goes as zero."""
-    shape = extents(space)
+def solve(space, x, flux, fields, dt, tolerance, walls, box, work):
+    """theta with C (theta - base) = dt f(theta) on the nodes with capacity, from `base`; iterations, or -1.
+
+    flux: conductances of particles, pieces, and what they met; fields: C, base, theta, and rate, which comes and goes as zero.
+    """
+    (flow, pieces, met), (capacity, base, theta, rate), shape = flux, fields, extents(space)
     each = inside(capacity, shape, box)
     ghosts = base.reshape(-1, 1)
     unfold(ghosts, 0, shape, box, walls)

@@ -23,11 +23,11 @@ from mpm.boundary.walls import empty
 from mpm.integrate.active_nodes import SLACK, reaches, touch
 from mpm.integrate.dither import dither
 from mpm.integrate.explicit import clean, on_nodes, step_chunk
-from mpm.integrate.fbar import any_averages
+from mpm.integrate.step_parts import Moment, scratch
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
-from mpm.transfer import CHUNK, deliver, new_chunk, spread, uses_basis_gradient, wants_change
+from mpm.transfer import CHUNK, deliver, spread
 
 STILL, LATE = 0, 1
 
@@ -42,69 +42,48 @@ class Slabs(NamedTuple):
     late: np.ndarray  # (B, N) whether the chunk that begins at a particle is to be scattered after all slabs
     strays: np.ndarray  # (M,) how many such chunks a slab has
     boxes: np.ndarray  # (M + 1, 3, 2) nodes touched; the last: by late chunks
-    blocks: np.ndarray  # (2, marks) of both buffers (mpm.boundary.blocks)
     reports: np.ndarray  # (M + 1, B, REPORT)
 
 
-class Moment(NamedTuple):
-    """Where in a block of steps."""
-
-    now: int  # buffer to gather from
-    dt: float
-    step: int
-    begun: int  # steps of the run before the block
-    opening: bool
-    last: bool
-    late: bool  # only the late chunks
-    sparse: bool  # whether chunks mark what they touch
-
-
 @kernel
-def pass_slabs(space, gradient, scheme, bodies, slabs, which, nodes, force, moment):
-    """Gather from buffer `now`, respond, and scatter on to the other, for the slabs `which`, one after another."""
-    chunk = new_chunk(bodies[0].particles.x.shape[1], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    change = np.zeros_like(chunk.v)
+def pass_slabs(method, bodies, slabs, which, buffers, moment, late):
+    """Gather from buffer `now`, respond, and scatter on to the other, for the slabs `which`, one after another; of `late` chunks what is left of it."""
+    chunk = scratch(method, bodies, buffers.nodes)
     for s in which:
-        if not moment.late:
-            empty(extents(space), slabs.boxes[s])
+        if not late:
+            empty(extents(method.space), slabs.boxes[s])
             slabs.strays[s] = 0
-        pass_bodies(space, gradient, scheme, bodies, chunk, change, slabs, s, nodes, force, moment)
+        b = 0
+        for body in literal_unroll(bodies):
+            pass_part(method, body, chunk, slabs, s, b, buffers, moment, late)
+            b += 1
 
 
 @kernel
-def pass_bodies(space, gradient, scheme, bodies, chunk, change, slabs, s, nodes, force, moment):
-    """One slab."""
-    b = 0
-    for body in literal_unroll(bodies):
-        pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, force, moment)
-        b += 1
-
-
-@kernel
-def pass_part(space, gradient, scheme, body, chunk, change, slabs, s, b, nodes, force, moment):
+def pass_part(method, body, chunk, slabs, s, b, buffers, moment, after):
     """One body's part of a slab."""
-    row = slabs.strays.shape[0] if moment.late else s
-    box, report, there, pushed = slabs.boxes[row], slabs.reports[row, b], nodes[1 - moment.now], force[1 - moment.now]
+    row = slabs.strays.shape[0] if after else s
+    space, now, report = method.space, moment.now, slabs.reports[row, b]
+    here, push, there, pushed = buffers.nodes[now], buffers.force[now], buffers.nodes[1 - now], buffers.force[1 - now]
     x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
-    starts = moment.opening or moment.late
+    part = Moment(now, moment.dt, moment.step, moment.begun, moment.opening or after, moment.last, moment.sparse)
     reach, shake = reaches(space, 0 if moment.last else end - begin), dither(space, x, moment.begun + moment.step)
     for first in range(begin, end, CHUNK):
-        if moment.late and late[first] == STILL:
+        if after and late[first] == STILL:
             continue
         count = min(CHUNK, end - first)
-        if not step_chunk(space, gradient, scheme, body, chunk, change, nodes[moment.now], force[moment.now], first, count, moment.dt, moment.step, shake,
-                          starts, moment.last, report):  # fmt: skip
+        if not step_chunk(method, body, chunk, here, push, part, first, count, shake, report):
             return
         if moment.last:
             continue
-        if moment.late or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
+        if after or within(space, chunk, slabs.axis, count, slabs.low[s], slabs.high[s]):
             late[first] = STILL
-            spread(scheme, space, gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK])
+            spread(method.scheme, space, method.gradient, x, first, chunk, count, there, pushed, reach[(first - begin) // CHUNK])
         else:
             deliver(body.particles, first, chunk, count)
             late[first] = LATE
             slabs.strays[s] += 1
-    touch(space, x, begin, end, reach, box, slabs.blocks[1 - moment.now], moment.sparse)
+    touch(space, x, begin, end, reach, slabs.boxes[row], buffers.blocks[1 - now], moment.sparse)
 
 
 @kernel
@@ -122,48 +101,46 @@ def within(space, chunk, axis, count, low, high):
 
 
 @kernel
-def nodal_phase(space, gradient, scheme, bodies, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports):
+def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, dt, kick, reports):
     """What is done to the nodes between scatter and gather."""
-    chunk = new_chunk(gravity.shape[0], nodes, uses_basis_gradient(gradient) or any_averages(bodies), wants_change(scheme))
-    on_nodes(space, gradient, scheme, bodies, chunk, nodes, force, boxes, blocks, sparse, now, walls, gravity, dt, kick, reports)
+    on_nodes(method, bodies, scratch(method, bodies, buffers.nodes), buffers, now, sparse, walls, gravity, dt, kick, reports)
 
 
-def advance_slabs(scene, nodes, force, boxes, blocks, dt, kick, steps, begun, reports) -> bool:
+def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
-    space, bodies, starts, axis = scene.space, scene.bodies, scene.order.starts, scene.order.axis
+    bodies, shape, boxes, starts, axis = scene.bodies, extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
     largest = max(len(body.particles.m) for body in bodies)
     slabs = Slabs(
         axis, starts, np.zeros(M, np.int64), np.zeros(M, np.int64), np.zeros((len(bodies), largest), np.uint8), np.zeros(M, np.int64),
-        np.zeros((M + 1, 3, 2), np.int64), blocks, np.repeat(reports[None], M + 1, axis=0),
+        np.zeros((M + 1, 3, 2), np.int64), np.repeat(reports[None], M + 1, axis=0),
     )  # fmt: skip
     reach = scene.order.reach
     order, strayed, sparse = wave(M), False, True
     for box in boxes:
-        empty(extents(space), box)
+        empty(shape, box)
     with Crew(min(scene.threads, M)) as crew:
         for step in range(-1, steps):
             opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
             if not opening:
-                around = scene.walls, scene.gravity, dt, kick if step == 0 else dt
-                nodal_phase(space, scene.gradient, scene.scheme, bodies, nodes, force, boxes, blocks, sparse, now, *around, slabs.reports[M])
+                nodal_phase(method, bodies, buffers, now, sparse, scene.walls, scene.gravity, dt, kick if step == 0 else dt, slabs.reports[M])
             share_out(reach, slabs)
-            moment = Moment(now, kick if opening else dt, step, begun, opening, last, False, sparse)
-            crew.work(order, lambda which, m=moment: pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, which, nodes, force, m))
-            empty(extents(space), slabs.boxes[M])
+            moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
+            crew.work(order, lambda which, m=moment: pass_slabs(method, bodies, slabs, which, buffers, m, False))
+            empty(shape, slabs.boxes[M])
             if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():
-                strayed, moment = True, moment._replace(late=True)
-                pass_slabs(space, scene.gradient, scene.scheme, bodies, slabs, np.flatnonzero(slabs.strays), nodes, force, moment)
+                strayed = True
+                pass_slabs(method, bodies, slabs, np.flatnonzero(slabs.strays), buffers, moment, True)
             if (slabs.reports[..., CODE] != 0).any():
                 break
             if not opening:
-                clean(space, scene.scheme, nodes[now], force[now], boxes[now], blocks[now])
+                clean(method, buffers, now)
             if not last:
                 boxes[1 - now, :, 0], boxes[1 - now, :, 1] = slabs.boxes[:, :, 0].min(axis=0), slabs.boxes[:, :, 1].max(axis=0)
                 used = slabs.boxes[:M, axis]
                 reach[used[:, 1] > used[:, 0]] = used[used[:, 1] > used[:, 0]]
             if opening:
-                sparse = bool(thin(extents(space), boxes[1 - now], blocks[1 - now]))
+                sparse = bool(thin(shape, boxes[1 - now], buffers.blocks[1 - now]))
     for b, report in enumerate(reports):
         together(report, slabs.reports[:, b])
     return strayed

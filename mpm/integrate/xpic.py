@@ -20,20 +20,22 @@ FIELDS = 4  # scratch fields of `sharpened`
 
 
 @role
-def sharpen(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
-    """Between `update` and gather: add q_k to the change of velocity in `force`. `spare` and `field` are the other buffers, zero before and after."""
+def sharpen(scheme, method, bodies, chunk, buffers, now, walls):
+    """Between `update` and gather: add q_k to the change of velocity of buffer `now`. The other is scratch, zero before and after."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
 
 
 @sharpen.register(Apic)
 @sharpen.register(Flip)
-def sharpen_flip_or_apic(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
+def sharpen_flip_or_apic(scheme, method, bodies, chunk, buffers, now, walls):
     return None
 
 
 @sharpen.register(Xpic)
-def sharpen_xpic(scheme, space, gradient, bodies, chunk, nodes, force, spare, field, box, blocks, walls):
+def sharpen_xpic(scheme, method, bodies, chunk, buffers, now, walls):
+    space, gradient, box, blocks = method.space, method.gradient, buffers.boxes[now], buffers.blocks[now]
     shape, D = extents(space), directions(space)
+    nodes, force, spare, field = buffers.nodes[now], buffers.force[now], buffers.nodes[1 - now], buffers.force[1 - now]
     blend_nodes(field, nodes, force, spare, D, shape, box, 0.0, 0.0)
     for _ in range(1, scheme.order):
         there_and_back(space, gradient, bodies, chunk, field, spare, box)

@@ -95,11 +95,11 @@ def bench(options: Options) -> dict:
 
     scene, h = cube(options), 1.0 / options.n
     scene.threads = options.threads
-    clock, buffers = Clock(scene), work_arrays(scene)
+    clock, work = Clock(scene), work_arrays(scene)
     dt = 0.2 * h / np.sqrt((LAM + 2 * MU) / DENSITY)
 
     def run(steps):
-        advance_block(scene, clock, buffers, dt, steps)
+        advance_block(scene, clock, work, dt, steps)
 
     began = time.perf_counter()
     run(1)

@@ -28,12 +28,12 @@ WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansi
 
 
 @kernel
-def gathers(scheme, space, gradient, body, chunk, nodes, force, change, times):
+def gathers(scheme, space, gradient, body, chunk, nodes, force, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
             lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
-            collect(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, change)
+            collect(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force)
 
 
 @kernel
@@ -68,7 +68,7 @@ class Bench:
     def __init__(self, experiment, threads: int = 1):
         self.scene = build(experiment)
         self.scene.threads = threads
-        self.clock, self.buffers = Clock(self.scene), work_arrays(self.scene)
+        self.clock, self.work = Clock(self.scene), work_arrays(self.scene)
         self.now = limits(self.scene.space, directions(self.scene.space), self.scene.bodies, self.clock.reports)
         self.dt = (self.scene.step or self.now.step() * self.scene.safety) / 4
         self.particles = sum(len(body.particles.m) for body in self.scene.bodies)
@@ -76,11 +76,11 @@ class Bench:
 
     def steps(self) -> None:
         """A block of steps."""
-        advance_block(self.scene, self.clock, self.buffers, self.dt, self.block)
+        advance_block(self.scene, self.clock, self.work, self.dt, self.block)
 
     def heat(self) -> None:
         """A heat step of every body."""
-        warm_bodies(self.scene, self.clock, self.buffers, self.clock.time, 1e-3 * min(self.now.pace, 1.0), self.now)
+        warm_bodies(self.scene, self.clock, self.work, self.clock.time, 1e-3 * min(self.now.pace, 1.0), self.now)
 
     def step_ns(self) -> float:
         """ns a particle and mechanical step."""
@@ -88,13 +88,13 @@ class Bench:
 
     def phases(self) -> dict[str, float]:
         """ns a particle of each phase, on the first body."""
-        scene, (nodes, force, _, _) = self.scene, self.buffers
+        scene, (nodes, force, _, _) = self.scene, self.work.buffers
         body, D, report = scene.bodies[0], directions(scene.space), np.zeros(REPORT)
         kind, space, gradient, count = scene.scheme, scene.space, scene.gradient, len(scene.bodies[0].particles.m)
-        chunk, change = new_chunk(D, nodes, True, True), np.zeros((D, CHUNK), nodes.dtype)
+        chunk = new_chunk(D, nodes, True, True)
         box, tiny, times = np.array([[10**9, -1]] * 3), 1e-9 * self.dt, max(1, 200_000 // count)
         calls = {
-            "gather": lambda: gathers(kind, space, gradient, body, chunk, nodes[0], force[0], change, times),
+            "gather": lambda: gathers(kind, space, gradient, body, chunk, nodes[0], force[0], times),
             "move": lambda: moves(space, body, chunk, tiny, report, times),
             "respond": lambda: responds(space, gradient, body, chunk, tiny, report, times),
             "scatter": lambda: spreads(kind, space, gradient, body, chunk, nodes[1], force[1], box, times),
@@ -134,7 +134,7 @@ def phases(experiment, threads: int = 1) -> dict:
         return rigid(experiment)
     whole = Bench(experiment, threads)
     found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "without_ns": {}}
-    found["precision"], found["peaks"] = whole.buffers[0].dtype.name, peaks(whole.buffers[0].dtype)
+    found["precision"], found["peaks"] = whole.work.buffers.nodes.dtype.name, peaks(whole.work.buffers.nodes.dtype)
     if whole.now.heat:
         found["heat_step_ns"] = 1e9 * seconds(whole.heat) / whole.particles
     for name, sections in WITHOUT.items():

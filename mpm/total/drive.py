@@ -47,8 +47,8 @@ def show_all(scene) -> None:
         show(scene.space, body.particles, reference)
 
 
-def advance_references(scene, clock, buffers, dt: float, steps: int) -> None:
-    """One block of `steps` steps of dt, without buffers; clock.reports tells of it."""
+def advance_references(scene, clock, work, dt: float, steps: int) -> None:
+    """One block of `steps` steps of dt, without `work`; clock.reports tells of it."""
     clock.reset()
     for body, reference, report in zip(scene.bodies, scene.references, clock.reports, strict=True):
         advance_total(scene.space, body, reference, scene.gravity, dt, steps, report)

@@ -14,7 +14,7 @@ class Apic(NamedTuple):
 
 
 @carry.register(Apic)
-def carry_apic(scheme, particles, first, chunk, count, change, last):
+def carry_apic(scheme, particles, first, chunk, count, last):
     if last:
         deliver(particles, first, chunk, count)
 
@@ -39,5 +39,5 @@ def spread_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, b
 
 
 @collect.register(Apic)
-def collect_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
+def collect_apic(scheme, space, gradient, x, first, chunk, count, nodes, force):
     gather(space, gradient, x, first, chunk, count, nodes)

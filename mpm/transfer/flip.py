@@ -18,10 +18,10 @@ class Flip(NamedTuple):
 
 
 @carry.register(Flip)
-def carry_flip(scheme, particles, first, chunk, count, change, last):
+def carry_flip(scheme, particles, first, chunk, count, last):
     for c in range(chunk.u.shape[0]):
         for p in range(count):
-            old, dv = particles.v[first + p, c], change[c, p]
+            old, dv = particles.v[first + p, c], chunk.change[c, p]
             chunk.u[c, p] = old + dv + scheme.blend * (chunk.v[c, p] - dv - old)
         for d in range(chunk.u.shape[0]):
             for p in range(count):
@@ -41,14 +41,14 @@ def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, 
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
     slope, tensor = impulse_parts(gradient, chunk)
     c = chunk
-    apart = Chunk(c.none, c.f, slope, tensor, c.v, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
+    apart = Chunk(c.none, c.f, slope, tensor, c.v, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
     scatter(space, gradient, x, first, apart, count, force, box)
 
 
 @collect.register(Flip)
-def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
+def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force):
     c = chunk
-    changed = Chunk(c.m, c.a, c.A, c.G, change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
+    changed = Chunk(c.m, c.a, c.A, c.G, c.change, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
     gather(space, gradient, x, first, changed, count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 

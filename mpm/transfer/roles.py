@@ -28,6 +28,7 @@ class Chunk(NamedTuple):
     A: np.ndarray  # (D, D, n) slope
     G: np.ndarray  # (D, D, n) tensor on grad(w); read with the B-spline gradient only
     v: np.ndarray  # (D, n) gathered velocity
+    change: np.ndarray  # (D, n) gathered change of velocity; the same array as v where a scheme does not want it apart
     C: np.ndarray  # (D, D, n) gathered slope
     L: np.ndarray  # (D, D, n) gathered gradient; the same array as C where they are the same
     u: np.ndarray  # (D, n) velocity that the particle keeps; the same array as v where a scheme keeps that
@@ -67,8 +68,8 @@ def gather_scalar(space, x, first, count, nodes, value, slope, grad):
 
 
 @role(inline=True)
-def carry(scheme, particles, first, chunk, count, change, last):
-    """Particle velocity and slope, in u and U, from what was gathered; `change` (D, n) is sum w (v_i+ - v_i) where the scheme asks for it.
+def carry(scheme, particles, first, chunk, count, last):
+    """Particle velocity and slope, in u and U, from what was gathered.
 
     On to the particles themselves after the `last` of a run of steps, and wherever the scheme needs them there.
     """
@@ -82,8 +83,8 @@ def spread(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
 
 
 @role(inline=True)
-def collect(scheme, space, gradient, x, first, chunk, count, nodes, force, change):
-    """Gather v, C, L of a chunk, and `change` (D, n) where the scheme asks for it."""
+def collect(scheme, space, gradient, x, first, chunk, count, nodes, force):
+    """Gather v, C, L of a chunk, and `change`, sum w (v_i+ - v_i), where the scheme asks for it."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")
 
 
@@ -124,8 +125,8 @@ def new_chunk(D, like, own_gradient, own_velocity):
     """
     line = 64 // like.itemsize
     wide = (8 if own_gradient else 4) * D + 4
-    rows = 15 + 7 * D + 7 * D * D + D * ROWS + wide  # of CHUNK numbers: at least as many as are taken below
-    pool = np.zeros(rows * CHUNK + 17 * (APART + 1) * line, like.dtype)
+    rows = 15 + 8 * D + 7 * D * D + D * ROWS + wide  # of CHUNK numbers: at least as many as are taken below
+    pool = np.zeros(rows * CHUNK + 18 * (APART + 1) * line, like.dtype)
     at = -pool.ctypes.data % 64 // like.itemsize
     n, step, vector, tensor = CHUNK, APART * line, D * CHUNK, D * D * CHUNK
     m, at = pool[at : at + n], at + n + step
@@ -141,13 +142,14 @@ def new_chunk(D, like, own_gradient, own_velocity):
     work, at = pool[at : at + 12 * n].reshape(12, n), at + 12 * n + step
     stencils, at = pool[at : at + D * ROWS * n].reshape(D, ROWS, n), at + D * ROWS * n + step
     packed, at = pool[at : at + wide * n].reshape(n, wide), at + wide * n + step
-    L, u, U = C, v, C
+    L, u, U, change = C, v, C, v
     if own_gradient:
         L, at = pool[at : at + tensor].reshape(D, D, n), at + tensor + step
     if own_velocity:
         u, at = pool[at : at + vector].reshape(D, n), at + vector + step
-        U = pool[at : at + tensor].reshape(D, D, n)
-    return Chunk(m, a, A, T, v, C, L, u, U, f, S, work, place, stencils, np.zeros((3, 2), np.int64), none, packed)
+        U, at = pool[at : at + tensor].reshape(D, D, n), at + tensor + step
+        change = pool[at : at + vector].reshape(D, n)
+    return Chunk(m, a, A, T, v, change, C, L, u, U, f, S, work, place, stencils, np.zeros((3, 2), np.int64), none, packed)
 
 
 @kernel(inline=True)

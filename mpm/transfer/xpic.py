@@ -1,7 +1,7 @@
 """XPIC of order k (Hammerquist & Nairn 2017): FLIP whose particle velocities are cleaned of what the grid cannot see.
 
 v_p = [1 - (1 - G P)^k] v_p + sum w (v_i+ - v_i), P particles to nodes, G nodes to particles; k = 1 is PIC. On the nodes that is one more gather and scatter
-an order: q_1 = v_i, q_(j+1) = q_1 + (1 - P G) q_j, and v_p = sum w (q_k + v_i+ - v_i) (mpm.integrate.xpic keeps `change` so). A mode of wave number
+an order: q_1 = v_i, q_(j+1) = q_1 + (1 - P G) q_j, and v_p = sum w (q_k + v_i+ - v_i) (mpm.integrate.xpic keeps the change so). A mode of wave number
 kappa loses (kappa h/2)^(2 k) of itself a step.
 Good values: order 2 to 5.   Fails when: long runs of many small steps must keep modes of a few cells: APIC loses 0.024 (kappa h)^4, as order 2 does about.
 """
@@ -19,10 +19,10 @@ class Xpic(NamedTuple):
 
 
 @carry.register(Xpic)
-def carry_xpic(scheme, particles, first, chunk, count, change, last):
+def carry_xpic(scheme, particles, first, chunk, count, last):
     for c in range(chunk.u.shape[0]):
         for p in range(count):
-            chunk.u[c, p] = change[c, p]
+            chunk.u[c, p] = chunk.change[c, p]
         for d in range(chunk.u.shape[0]):
             for p in range(count):
                 chunk.U[c, d, p] = 0.0

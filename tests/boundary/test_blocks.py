@@ -74,15 +74,15 @@ def test_a_body_far_off_changes_no_bit(core, D, transfer):
         grid = {"dimension": D, "size": [size] * D, "cell": 0.25}
         made = build(core.experiment(D, changes, bodies=bodies, materials={"solid": material}, surfaces=[], grid=grid))
         assert (made.meeting.stops < 0).all() and (made.meeting.pairs < 0).all()
-        buffers = work_arrays(made)
+        work = work_arrays(made)
         box, blocks = np.zeros((3, 2), np.int64), new_blocks(np.prod(extents(made.space)))[0]
         empty(extents(made.space), box)
         for body in made.bodies:
             marked(made.space, body.particles.x, box, blocks)
         assert thin(extents(made.space), box, blocks) == (name == "far")
         for _ in range(3):
-            advance_block(made, Clock(made), buffers, 0.01, 20)
-        assert not any(np.any(array) for array in (buffers[0], buffers[1], buffers[2][1]))
+            advance_block(made, Clock(made), work, 0.01, 20)
+        assert not any(np.any(array) for array in (work.buffers.nodes, work.buffers.force, work.buffers.blocks))
         found[name] = made.bodies[0].particles
     for array, other in zip(found["near"], found["far"], strict=True):
         assert np.array_equal(array, other)

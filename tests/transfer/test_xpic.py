@@ -37,18 +37,18 @@ def test_damping_of_temperature_and_velocity(core, order):
     from mpm.simulation import Clock, march, work_arrays
 
     scene = build(warm_box(core, {"xpic": {"order": order}}))
-    body, buffers = scene.bodies[0], work_arrays(scene)
+    body, work = scene.bodies[0], work_arrays(scene)
     x = body.particles.x[:, 0].copy()
     body.thermal.theta[:] = np.cos(3 * np.pi * x)
-    lost = sharpened(scene.space, body, buffers[3][:4], scene.walls, order)
+    lost = sharpened(scene.space, body, work.rows[:4], scene.walls, order)
     expected = (3 * np.pi * H / 2) ** (2 * order)
     assert -mode(x, lost, True) == pytest.approx(expected, rel=0.05)
-    assert abs(np.sum(lost)) < 1e-13 and not np.any(buffers[3])
+    assert abs(np.sum(lost)) < 1e-13 and not np.any(work.rows)
     scene.step = 1e-9
     body.particles.v[:, 0] = np.sin(3 * np.pi * x)
-    assert march(scene, Clock(scene), Guards(scene), buffers, 1e-9, lambda: False).ok
+    assert march(scene, Clock(scene), Guards(scene), work, 1e-9, lambda: False).ok
     assert 1 - mode(x, body.particles.v[:, 0], False) == pytest.approx(expected, rel=0.05)
-    assert not any(np.any(array) for array in (buffers[0], buffers[1]))
+    assert not any(np.any(array) for array in (work.buffers.nodes, work.buffers.force))
 
 
 def test_pic_temperature_conducts_by_itself(core):
