@@ -2,8 +2,10 @@
 
 Header      the first line with the columns that are asked for (lines before it are passed over: the exports of wireless probes have nine); # begins a comment
 Fields      between commas, semicolons or tabs, whichever the header has; where it is not the comma, a comma in a number is its decimal sign
-Time        a column called second, minute, hour (or s, min, h, time, timestamp, elapsed, with a unit in brackets or behind _); numbers, clock times
-            (12:30, 12:30:05), or dates with one (2026-05-01 12:30:05), which count from the first row or from `start`. A probe's export counts seconds
+Time        a column called second, minute, hour (or s, min, h, time, timestamp, elapsed, with a unit in brackets or behind _), or the one that is named;
+            numbers, clock times (12:30, 12:30:05, 1:30 PM; minutes and seconds under [mm:ss]), or dates with one (2026-05-01 12:30:05, 01.05.2026 12:30), which
+            count from the first row or from `start`. Without dates, a clock that goes back by half a day or more has passed midnight. A probe's export counts
+            seconds
 Value       its unit stands behind the last _ or in brackets, or is given; temperatures of a probe's export are in degC
 Rows may stand in any order of time; they are kept by rising time. Everything else that is not plain is refused with its line.
 """
@@ -23,7 +25,10 @@ SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0}
 LIKE_TIME = re.compile(r"(?:time|timestamp|elapsed|t|zeit|clock)?\W*_?(?:time)?", re.IGNORECASE)
 TIMES = {"second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "minute": 60.0, "minutes": 60.0, "min": 60.0, "hour": 3600.0, "hours": 3600.0, "h": 3600.0,
          "ms": 1e-3, "day": 86400.0, "days": 86400.0, "d": 86400.0}  # fmt: skip
-CLOCK = re.compile(r"(?:(\d{4}-\d{2}-\d{2})[T ])?(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d+)?))?")
+CLOCK = re.compile(r"(?:(?P<date>\d{4}-\d{2}-\d{2}|\d{1,2}\.\d{1,2}\.\d{4}),?[T ]\s*)?(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d+)?))?"
+                   r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?(?P<zone>Z|[+-]\d{2}:?\d{2})?")  # fmt: skip
+DEGREES = {"c": "degC", "celsius": "degC", "deg c": "degC", "f": "degF", "fahrenheit": "degF", "deg f": "degF"}  # as people write them in a header
+LETTERS = set("°µ²³äöüÄÖÜßéèàç".encode("cp1252"))  # of files that a spreadsheet wrote in Windows-1252
 MOST_BYTES, MOST_ROWS, MOST_BEFORE = 64 * 2**20, 100_000, 30  # of a file; of its curve, which every point carries; lines before the header
 EXPORT = "Combustion Inc"  # begins the export of a wireless eight-sensor probe
 
@@ -46,8 +51,10 @@ def content(path: Path) -> str:
     if (not raw and found.st_size) or len(raw) > MOST_BYTES:
         raise Unreadable(0, f"the file has {max(found.st_size, len(raw)) / 2**20:.0f} MiB", f"at most {MOST_BYTES // 2**20} MiB")
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError as error:
+        if {byte for byte in raw if byte > 127} <= LETTERS:
+            return raw.decode("cp1252")
         raise Unreadable(raw.count(b"\n", 0, error.start) + 1, f"this is not UTF-8 text (byte 0x{raw[error.start]:02x})", "a CSV file in UTF-8") from None
 
 
@@ -71,6 +78,8 @@ def seconds_of(name: str) -> float | None:
     if name.lower() in TIMES:
         return TIMES[name.lower()]
     unit = unit_of(name)
+    if re.fullmatch(r"(h+:)?m+:s+|h+:m+", unit.lower()):
+        return math.nan
     stem = re.sub(r"[\[(][^\])]*[\])]\s*$", "", name) if not name.rstrip().endswith(unit) else name.removesuffix(unit)
     if unit.lower() in TIMES and LIKE_TIME.fullmatch(stem.strip(" _") or ""):
         return TIMES[unit.lower()]
@@ -147,6 +156,8 @@ class Line:
     def __init__(self, head: int, names: list[str], sign: str, time: int, value: int, sigma: int | None):
         self.head, self.names, self.sign, self.at = head, names, sign, (time, value, sigma)
         self.clock = False  # whether a clock time was seen
+        self.days, self.last = 0, None  # of clock times without a date
+        self.short = re.fullmatch(r"m+:s+", unit_of(names[time]).lower()) is not None
         self.scale, self.convert, self.error = 1.0, None, None
 
     def numbers(self, number: int, row: list[str]) -> tuple[float, ...]:
@@ -160,20 +171,46 @@ class Line:
     def second(self, number: int, text: str) -> float:
         """A time in seconds."""
         if match := CLOCK.fullmatch(text):
-            self.clock = True
-            day = datetime.date.fromisoformat(match[1]).toordinal() if match[1] else 0
-            return day * 86400.0 + int(match[2]) * 3600.0 + int(match[3]) * 60.0 + float(match[4] or 0)
+            return self.clock_time(number, text, match)
         if math.isnan(self.scale):
             raise Unreadable(number, f"{self.names[self.at[0]]} is no clock time, and its column tells no unit: {brief(text)}",
-                             "12:30:05, or a column named second, minute, time [min]")  # fmt: skip
+                             "12:30:05, 2026-05-01 12:30:05, or a column named second, minute, time [min]")  # fmt: skip
         return self.figure(number, text, self.names[self.at[0]]) * self.scale
+
+    def clock_time(self, number: int, text: str, match: Any) -> float:
+        """A clock time in seconds; one without a date that goes back by half a day or more is of the next day."""
+        self.clock = True
+        hour, minute, second = int(match["hour"]), int(match["minute"]), float((match["second"] or "0").replace(",", "."))
+        if self.short and match["second"] is None:
+            return hour * 60.0 + minute  # mm:ss
+        date = "-".join(part.zfill(2) for part in reversed((match["date"] or "").split(".")) if part)
+        try:
+            days = datetime.date.fromisoformat(date).toordinal() if date else self.days
+        except ValueError as error:
+            raise Unreadable(number, f"{brief(text)} is no date: {error}", "2026-05-01 12:30:05, or 01.05.2026 12:30:05") from None
+        if minute > 59 or second >= 60 or ((date or match["half"]) and hour > (12 if match["half"] else 23)):  # alone, it may be a stop watch
+            raise Unreadable(number, f"{brief(text)} is no time of day", "12:30:05, 1:30 PM, or 2026-05-01 12:30:05")
+        if match["half"]:
+            hour = hour % 12 + 12 * (match["half"] in "Pp")
+        moment = 3600.0 * hour + 60.0 * minute + second
+        zone = match["zone"] or "Z"
+        away = 0.0 if zone == "Z" else float(zone[0] + "1") * (3600.0 * int(zone[1:3]) + 60.0 * int(zone[-2:]))
+        if not date:
+            if self.last is not None and moment < self.last - 43200.0:
+                self.days = days = days + 1
+            self.last = moment
+        return days * 86400.0 + moment - away
 
     def origin(self, start: Any, first: float) -> float:
         """The second of the column at which the run begins."""
         if start is None:
             return first
         try:
-            return self.second(0, start) if isinstance(start, str) else float(start) * (1.0 if math.isnan(self.scale) else self.scale)
+            if not isinstance(start, str):
+                return float(start) * (1.0 if math.isnan(self.scale) else self.scale)
+            self.days, self.last = 0, None
+            begin = self.second(0, start)
+            return begin - 86400.0 if begin > first + 43200.0 else begin  # the evening before
         except Unreadable:
             raise Unreadable(0, f"start is no time of the column {self.names[self.at[0]]!r}", "a number in its unit, or a clock time", "start") from None
 
@@ -185,7 +222,8 @@ class Line:
         except ValueError:
             found = math.nan
         if not math.isfinite(found):
-            raise Unreadable(number, f"{name} is no finite number: {brief(text)}", "a number")
+            twice = self.sign == "," and re.fullmatch(r"-?\d+,\d+", text)  # 20,5 or 1,000
+            raise Unreadable(number, f"{name} is no finite number: {brief(text)}", "20.5, or semicolons between the fields" if twice else "a number")
         return found
 
 
@@ -194,6 +232,7 @@ def conversion(head: int, name: str, units: str, given: str, key: str, differenc
     from mpm.config.units import UnitError, convert
 
     unit = given or unit_of(name)
+    unit = DEGREES.get(unit.lower().lstrip("°"), unit) if units == "K" else unit
     if not unit and units != "1":
         raise Unreadable(head, f"the column {name!r} tells no unit", f"a name that ends in one, as {name}_degC, or `unit: degC`" if units == "K" else
                          f"a name with one of the dimension of {units}, as {name} [{units}], or `unit: {units}`", key)  # fmt: skip
