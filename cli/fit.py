@@ -52,9 +52,13 @@ def fit(
         done = run(experiment, folder, options, calm(reporter(as_json, quiet)), tuple(hold_out or ()), posterior, talk)
     except Stopped as stopped:
         leave_at_once()
+        if as_json:
+            document({"out": folder, "stopped": stopped.why, "exit_code": stopped.code})
         warn(f"stopped ({stopped}); to go on: {again(context)}")
         raise typer.Exit(stopped.code) from None
     except NoFit as error:
+        if as_json:
+            document({"out": folder, "error": str(error), "exit_code": 4})
         warn(f"error: {error}")
         raise typer.Exit(4) from None
     picture, said = draw(done.dataset), sentences(done)

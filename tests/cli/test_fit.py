@@ -56,8 +56,9 @@ def test_it_answers_writes_and_does_nothing_twice(mpm, scene, tmp_path):
 
 
 def test_a_budget_stops_it_and_the_same_command_goes_on(mpm, scene, tmp_path):
-    done = mpm("fit", scene, "-o", tmp_path / "out", "-j", "1", "--time-budget", "0.1s")
+    done = mpm("fit", scene, "-o", tmp_path / "out", "-j", "1", "--time-budget", "0.1s", "--json")
     assert done.returncode == 75 and "to go on: mpm fit" in done.stderr
+    assert json.loads(done.stdout)["stopped"] == "budget"
     assert mpm("fit", scene, "-o", tmp_path / "out", "-j", "1").returncode == 0
 
 
