@@ -1,0 +1,20 @@
+"""The gallery names every shipped scene, and holds no picture that it does not show."""
+
+import re
+from pathlib import Path
+
+from mpm.plots import KINDS
+from mpm.starting.scenes import scenes
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "gallery.md").read_text(encoding="utf-8")
+
+
+def test_every_scene_and_kind_of_figure_is_shown():
+    assert {name for name in scenes() if f"`{name}`" not in PAGE} == set()
+    assert {kind for kind in KINDS if not re.search(rf"mpm plot OUT {kind}\b|{kind}", PAGE)} == set()
+    assert {path.name for path in (DOCS / "gallery").glob("*.png")} == set(re.findall(r"gallery/(\w+\.png)", PAGE))
+
+
+def test_thumbnails_are_small():
+    assert sum(path.stat().st_size for path in (DOCS / "gallery").glob("*.png")) < 1_500_000
