@@ -37,7 +37,8 @@ class Axis:
             values = np.array([str(value) for value in raw], dtype=object)
             label = words.compose(path or name, attrs.get("long_name", name), "")
             return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
-        scale = words.scale(raw, units, words.is_temperature_path(path))
+        named = str(attrs.get("long_name", "")).lower().startswith("temperature")  # a parameter of the user's own
+        scale = words.scale(raw, units, words.is_temperature_path(path) or named)
         values = scale(raw)
         log = log_spaced(values) if log is None else bool(log and (values > 0).all())
         letter = words.symbol(name)

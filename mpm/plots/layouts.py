@@ -97,7 +97,7 @@ def single(view: View) -> Any:
     """Series of one point, a panel a family; its warnings under them."""
     fig = families(view, None)
     if view.warned.any():
-        fig.text(0.01, 0.0, view.warnings_told(), color=QUIET, fontsize=9, va="bottom")
+        fig.supxlabel(view.warnings_told(), x=0.012, ha="left", color=QUIET, fontsize=9)
     return fig
 
 

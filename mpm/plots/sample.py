@@ -97,6 +97,8 @@ def dress(ax: Any, view: View, axis: Axis, name: str, scale: words.Scale, values
     if axis.log:
         ax.set_xscale("log")
         plain_ticks(ax.xaxis)
+    else:
+        ax.locator_params(axis="x", nbins=3)
     wide(ax, scale(values), name)
     ax.margins(0.08, 0.12)
     if first:

@@ -84,7 +84,7 @@ def called(view: View, name: str) -> str:
     """A series in the legend: the probe's name where it has one."""
     if name in view.probes:
         return name.removeprefix("temperature_").replace("_", " ")
-    text = words.short(view.long_name(name))
+    text = words.short(view.long_name(name)).removesuffix(" against the exact solution")
     head = text.split(",")[0]
     return head if " " in head else text  # not `kinetic` for `kinetic, elastic and gravitational energy`
 

@@ -94,7 +94,7 @@ def ordered(count: int) -> list[Any]:
 def legend_below(ax: Any, rows: list[list[Any]]) -> None:
     """Legends under the axis label, a row each or more where a row is too wide, where they cover nothing."""
     place = ax.get_subplotspec()  # axes that were placed by hand have none
-    room = 0.92 * ax.figure.bbox.width / ax.figure.dpi * 72 / (place.get_gridspec().ncols if place is not None else 1)
+    room = 0.82 * ax.figure.bbox.width / ax.figure.dpi * 72 / (place.get_gridspec().ncols if place is not None else 1)
     for place, handles in enumerate(line for row in rows for line in broken(row, room)):
         length = max(handle_length(handle) for handle in handles)
         back = (length + 0.6) * SMALL if handles[0].get_gid() == HEADING else 0.0  # a heading has no handle: its words begin the row

@@ -39,7 +39,8 @@ class View:
     @property
     def title(self) -> str:
         """The dataset's title, and whether it is a smoke run."""
-        title = visible(str(self.root.attrs.get("title") or words.title_case(str(self.root.attrs.get("name") or "mpm").replace("_", " "))))
+        title, name = (str(self.root.attrs.get(key) or "") for key in ("title", "name"))
+        title = visible(title if title not in ("", name) else words.title_case((name or "mpm").replace("_", " ")))
         return f"{title} (smoke run: coarse and short)" if str(self.root.attrs.get("smoke", "")).lower() in ("true", "1") else title
 
     @cached_property

@@ -5,12 +5,14 @@ the cache helps the next. With and without: the same config with a section taken
 of a step are counted: mpm.study.limits.
 """
 
+import contextlib
 from typing import Any
 
 import numpy as np
 
 from mpm.boundary import directions
 from mpm.config import ConfigError, load
+from mpm.costs import estimate
 from mpm.integrate.explicit import move
 from mpm.integrate.particle_update import respond
 from mpm.integrate.strain import REPORT
@@ -151,14 +153,29 @@ def phases(experiment, threads: int = 1) -> dict:
 
 
 def rigid(experiment) -> dict:
-    """Seconds of a point without particles."""
-    return {"point_s": seconds(lambda: run_point(experiment, compare=False)), "peaks": peaks()}
+    """Of a point without particles: its time, how much of it sets up, its steps, and what it takes without its surfaces."""
+    runs = []
+    whole = seconds(lambda: runs.append(run_point(experiment, compare=False)))
+    stepping, steps = float(np.median([run.wall_time for run in runs])), runs[0].steps
+    unknowns = estimate(experiment).get("unknowns", 0)
+    found = {"point_s": whole, "setup_s": max(0.0, whole - stepping), "steps": steps, "unknowns": unknowns, "without_s": {}, "peaks": peaks()}
+    found["unknown_step_ns"] = 1e9 * stepping / max(1, steps * unknowns)
+    data = experiment.resolved()
+    if data["surfaces"]:
+        data |= {"surfaces": [], "exact": None, "output": data["output"] | {"observables": [], "measured": {}}}
+        with contextlib.suppress(ConfigError):  # a scene that is nothing without them
+            less = load(data)
+            found["without_s"]["exchange"] = seconds(lambda: run_point(less, compare=False))
+    return found
 
 
 def table(found: dict) -> str:
     """The figures in words."""
     if "point_s" in found:
-        return f"{1e3 * found['point_s']:.3g} ms a point (no particles)"
+        each = f"{found['steps']} steps of {found['unknowns']} unknowns, {found['unknown_step_ns']:.3g} ns an unknown and step"
+        said = f"{1e3 * found['setup_s']:.3g} ms to set up, {each}"
+        less = [f"  without {name}: {1e3 * took:.3g} ms" for name, took in found["without_s"].items()]
+        return "\n".join([f"{1e3 * found['point_s']:.3g} ms a point (no particles): {said}", *less])
     by = f", {found['threads']} threads" if found["threads"] > 1 else ""
     lines = [f"{found['particles']} particles{by}, {found['step_ns']:.1f} ns a particle-step, {found['state_bytes']:.0f} B of state a particle"]
     lines += [f"  {name:8} {value:7.1f} ns" for name, value in found["phases_ns"].items()]
