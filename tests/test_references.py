@@ -12,6 +12,7 @@ FILES = sorted(path for path in [*ROOT.glob("*"), *(path for room in ROOMS for p
 FILES = [path for path in FILES if path not in (Path(__file__), ROOT / "tests/docs/test_build.py")]  # their examples dangle on purpose
 WRITERS = {f"mpm/study/{name}.py": "configs/verification" for name in ("single", "surfaces", "verification")}  # their text goes into that folder
 WRITERS["mpm/reference/pages.py"] = "docs"
+WRITERS["tests/docs/test_gallery.py"] = "docs"
 
 DOCUMENT = re.compile(r"(?<![\w/.-])((?:\.\./)*(?:[\w-]+/)*[\w-]+\.md)\b")
 NUMBERS = re.compile(r"\d+(?:\.\d+)*(?:(?:, | and |; )\d+(?:\.\d+)*)*(?![\w-]|\.\d)")
