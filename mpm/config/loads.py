@@ -17,7 +17,7 @@ class Traction(Model):
     """A force by area of the undeformed surface, that keeps its direction as the body deforms."""
 
     nominal: tuple[Pressure, ...] = doc(description="force by reference area, one number a direction")
-    ramp: Ramp = doc(0.0, description="time to full load, along a smooth step; at once unless given")
+    ramp: Ramp = doc(0.0, description="time to full load, of which 3 s^2 - 2 s^3 acts at s = t/ramp; at once unless given")
 
 
 class Drag(Model):

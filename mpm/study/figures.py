@@ -1,8 +1,8 @@
 """The figures of docs/accuracy.md, by one command: `python -m mpm.study.figures [NAME...]`.
 
 Each configs/studies/<name>.yaml that has a `chart:` is charted into results/<name>-chart (what is there is kept) and its figure goes to docs/chart_<name>.png;
-`theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for robin_cylinder: scikit-fem lives in an environment of its own; `--fem PYTHON` is short
-for its P1 and P2 by configs/studies/peers/fem_disc.py. Stopped anywhere, the same command goes on.
+`theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for those of BESIDE: scikit-fem lives in an environment of its own; `--fem PYTHON` is
+short for its P1 and P2 by their program in configs/studies/peers. Stopped anywhere, the same command goes on.
 `--quick`: three places a path and two rounds, into results/<name>-chart-quick alone; neither docs/ nor fronts.json change.
 """
 
@@ -18,7 +18,7 @@ from mpm.records.netcdf import write_whole
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "configs" / "studies"
 DOCS = ROOT / "docs"
-BESIDE = "robin_cylinder"
+BESIDE = {"robin_cylinder": "fem_disc.py", "cantilever": "fem_beam.py"}  # charts beside which scikit-fem is drawn, and its program
 
 
 def main() -> None:
@@ -31,13 +31,13 @@ def main() -> None:
     parser.add_argument("--compiling", action="store_true", help="time compilation too (mpm chart does unless told otherwise)")
     parser.add_argument("--quick", action="store_true")
     given = parser.parse_args()
-    peers = dict(pair.split("=", 1) for pair in given.peer)
-    if given.fem:
-        program = shlex.join([given.fem, str(STUDIES / "peers" / "fem_disc.py")])
-        peers |= {"P1": f"{program} 1", "P2": f"{program} 2"}
+    named = dict(pair.split("=", 1) for pair in given.peer)
     for name in given.names or [*names, *([] if given.quick else OTHERS)]:
-        began = time.monotonic()
-        for line in OTHERS[name]() if name in OTHERS else charted(name, peers if name == BESIDE else {}, given.compiling, given.quick):
+        began, peers = time.monotonic(), named if name in BESIDE else {}
+        if given.fem and name in BESIDE:
+            program = shlex.join([given.fem, str(STUDIES / "peers" / BESIDE[name])])
+            peers = named | {"P1": f"{program} 1", "P2": f"{program} 2"}
+        for line in OTHERS[name]() if name in OTHERS else charted(name, peers, given.compiling, given.quick):
             print(f"{name}: {line}", flush=True)
         print(f"{name}: {time.monotonic() - began:.0f} s", flush=True)
 

@@ -24,7 +24,7 @@ HEAD = """# Verification problems
 
 Made by `python -m mpm.study.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands
 at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
-displacement over all times and particles, relative (of the membrane at rest: at the end), beside it of velocity and stress where the solution gives
+displacement over all times and particles, relative (of what comes to rest: at the end), beside it of velocity and stress where the solution gives
 them, with their order in brackets; of temperature at the end. Time is that of the three runs on a busy machine, without compilation. Robin problems have
 Bi = 10 (ring: beta 10) and a fall of 1 K; particles fly across the grid as they cool. A problem
 without an order is exact in any step, or (rigid_rotation) bounded by the load of its own motion.
