@@ -1,12 +1,12 @@
 """Nominal tractions and drag on a body: forces beside the stress, taken from the config's `loads`.
 
-piece s of the surface of particle p, reference area A_s, at x_s = x_p + F_p d_s:   f_i += ramp(t) A_s T (w_ip + grad w_ip . F_p d_s)
-so force and moment about the particle are right wherever the surface lies in its cell. T is force by reference area and keeps its direction.
+f_i += ramp(t) sum_p (f_p w_ip + D_p F_p^T grad w_ip),  f_p and D_p of each particle from mpm.scene.traction: the force at its pieces of surface and its moment,
+or, on flat faces, the stress that the traction asks for, faded out inside. T is force by reference area and keeps its direction.
 drag  f_p = -rate m_p v_p;   ramp(t) = s^2 (3 - 2 s), s = t/ramp up to 1: without a kick at either end
 A static answer is the end of a ramp of several periods of the slowest mode omega, with a drag rate of about 2 omega.
 Good values  displacement of a pulled bar to 1e-4 with 16 cells, its strain to 0.3 % (tests/integrate/test_traction.py).
-Fails when   the stress of the particles in the last cell under the load is read: the quadrature of a cell that is cut balances the load as a whole, not
-             point by point, and those are off by as much as the stress itself.
+Fails when   the face is not flat: then the quadrature of a cell that is cut balances the load as a whole, not point by point, and the stress of particles in
+             the last cell is off by as much as itself. On a flat face it is right to 1e-3 (docs/frames.md).
 A body without loads compiles none of this.
 """
 
