@@ -114,7 +114,7 @@ def told(error: Exception) -> int:
     from mpm.sweep.store import Refused
 
     # named without importing what the command did not need
-    places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.scene.refusal", "SceneError"))
+    places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.plots", "NoDataset"), ("mpm.scene.refusal", "SceneError"))
     places += (("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"), ("mpm.starting.places", "Missing"))
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):

@@ -31,15 +31,19 @@ Further files
     view        what a dataset holds, as figures ask for it
 """
 
-import errno
-import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from mpm.text import visible
+
 KINDS = ("overview", "series", "finals", "snapshot")
 FORMATS = (".png", ".svg", ".pdf")
 DATASETS = ("sweep.nc", "run.nc")
+
+
+class NoDataset(FileNotFoundError):
+    """A folder without results."""
 
 
 class UnknownFigure(ValueError):
@@ -134,7 +138,7 @@ def dataset_of(out: Path) -> Path:
     for name in DATASETS:
         if (out / name).exists():
             return out / name
-    raise FileNotFoundError(errno.ENOENT, f"holds no {' and no '.join(DATASETS)}", os.fspath(out))
+    raise NoDataset(f"{visible(str(out))} holds no {' and no '.join(DATASETS)}; give the folder that `mpm sweep` or `mpm run` wrote")
 
 
 def _open(path: Path) -> Any:

@@ -82,3 +82,35 @@ def test_mp4(run, tmp_path):
     with av.open(str(path)) as container:
         frames = list(container.decode(video=0))
     assert len(frames) == 6 and (frames[0].width, frames[0].height) == (320, 200)
+
+
+def test_tools_are_drawn_where_they_stand_and_leave(tmp_path, monkeypatch):
+    import fake_runner
+
+    from mpm.outcome import Outcome
+    from mpm.state import Run
+
+    def run_point(experiment, beat=None, keeper=None):
+        times, x = np.array([0.0, 0.5, 1.0]), np.array([[0.03, 0.01], [0.05, 0.02]], np.float32)
+        run = Run(Outcome("completed"), times, {}, {}, steps=1, wall_time=0.01, facts={})
+        run.snapshot_times = times
+        run.particles = [{"position": x, "stress_mises": x[:, 0], "body": np.zeros(2, np.int32), "id": np.arange(2, dtype=np.int32)} for _ in times]
+        return run
+
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    monkeypatch.setattr(fake_runner, "run_point", run_point)
+    press = {"shape": {"box": {"lower": [0.02, 0.03], "upper": [0.06, 0.04]}}, "motion": {"velocity": [0, -0.01]}, "until": 0.9}
+    config = {
+        "grid": {"dimension": 2, "size": [0.1, 0.1], "cell": 0.005},
+        "bodies": {"b": {"shape": {"box": {"lower": [0.02, 0], "upper": [0.06, 0.025]}}, "material": "m"}},
+        "materials": {"m": {"density": 1000, "elastic": {"hencky": {"E": 1e4, "nu": 0.3}}}},
+        "tools": {"press": press},
+        "time": {"end": 1},
+        "output": {"every": 0.5, "snapshots": {"every": 0.5, "particles": ["position", "stress_mises"]}},
+    }
+    run_in(mpm.load(config), tmp_path / "p", lambda *_: False, print)
+    panels = still(tmp_path / "p", at=[0, 0.5, 1.0]).axes[:3]
+    loops = [[line for line in ax.lines if len(line.get_xdata()) == 5] for ax in panels]
+    assert [len(found) for found in loops] == [1, 1, 0]
+    lower = [found[0].get_ydata().min() for found in loops[:2]]
+    assert lower == pytest.approx([30, 25])  # mm
