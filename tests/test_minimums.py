@@ -27,9 +27,12 @@ print("read")
 """
 
 
-def wanted():
-    """Requirements, those of `cluster` too."""
-    return [*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["cluster"]]
+EXTRAS = ("cluster", "posterior", "sensitivity", "mp4", "usd", "parquet")  # zarr has a least xarray of its own
+
+
+def wanted(extras=EXTRAS):
+    """Requirements, those of the extras too."""
+    return [*PROJECT["dependencies"], *(one for extra in extras for one in PROJECT["optional-dependencies"][extra])]
 
 
 def interpreter(version):
@@ -40,7 +43,7 @@ def interpreter(version):
 
 
 def test_every_requirement_has_a_least_version():
-    assert all(LEAST.fullmatch(one) for one in wanted())
+    assert all(LEAST.fullmatch(one) for one in wanted((*EXTRAS, "zarr")))
     least = dict(LEAST.fullmatch(one).groups() for one in wanted())
     assert least["typer"] == "0.19" and least["pint"] == "0.24.4"  # the first that work
 
@@ -68,4 +71,7 @@ def test_a_fresh_environment_runs_the_smoke_sweeps(tmp_path, version, exactly):
     run(mpm, "sweep", ROOT / "configs/scenes/loaf.yaml", "--smoke", "-o", "loaf")
     run(mpm, "sweep", ROOT / "configs/scenes/loaf.yaml", "--smoke", "-o", "dask", "--scheduler", "local")
     assert run(mpm, "compare", "loaf", "dask") == "same\n"
+    run(mpm, "export", "loaf", "--to", "loaf.parquet")
+    run(mpm, "fit", ROOT / "configs/scenes/loaf_fit.yaml", "--smoke", "--posterior", "60", "-o", "fit")
+    run(tmp_path / "venv/bin/python", "-c", "import SALib.analyze.rbd_fast, av; from pxr import Usd")
     assert run(tmp_path / "venv/bin/python", "-c", LOOK, tmp_path) == "read\n"

@@ -222,6 +222,7 @@ def read(text: str, origin: Origin) -> tuple[Node | None, list[Problem]]:
             builder.report(line, column, "this is not UTF-8 text", given=escaped(letter))
         else:
             said, wanted = f"this is not YAML: the control character U+{ord(letter):04X}", f'its escape, in double quotes: "{escaped(letter)}"'
+            wanted = wanted if ord(letter) else "text without it"
             builder.report(line, column, said, allowed=wanted)
         return None, builder.problems
     except (YAMLError, ValueError, AssertionError, IndexError, KeyError, AttributeError, TypeError) as error:  # ruamel on odd characters and directives

@@ -163,7 +163,7 @@ def study(folder: Path, path: str, picked: list, tests: str, rows: dict[tuple, d
         if key in rows or time.monotonic() > until:
             continue
         if not took:
-            sound, took = run(folder, path, tests, 600.0)
+            sound, took = run(folder, path, tests, 3600.0)
             if not sound:
                 print(f"{path}: its tests ({tests}) fail without a mutant", flush=True)
                 return
