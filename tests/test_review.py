@@ -61,7 +61,7 @@ def planted(core, experiment, spoil):
 
 def test_heat_that_the_ledger_misses(core):
     """A kelvin that nobody took."""
-    experiment = core.experiment(1, {"outside": core.COLD})
+    experiment = core.experiment(1, {"outside": core.COLD, "kappa": 2.0})
     assert planted(core, experiment, lambda body: body.thermal.theta.__isub__(1.0)) == ("heat",)
     assert planted(core, experiment, lambda body: None) == ()
 
@@ -143,7 +143,7 @@ def test_expansion_explains_volume(core):
     """Warm gas in a dough may double it, and no warning says so; what it gains beyond is told."""
     from mpm.review import explained
 
-    experiment = core.experiment(1, {"gamma": 0.5})
+    experiment = core.experiment(1, {"gamma": 0.5, "kappa": 2.0})
     run = mpm.run_point(experiment)
     run.series["temperature_max"] = run.series["temperature_max"] + 10.0
     assert explained(experiment, run) == (1.0, pytest.approx(np.exp(0.5 * 10 / (3 + 4 / 3))))
