@@ -35,9 +35,6 @@ from mpm_cli.talk import internal, leave_at_once, warn
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):  # read when NumPy is imported, which comes later
-    os.environ.setdefault(name, "1")  # --threads shares particles; two threads of BLAS for small factors only stand in one another's way
-
 COMMANDS = (
     new,
     run,

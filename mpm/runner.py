@@ -7,12 +7,15 @@ Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Ga
 In dimension 0 there is neither: a material point along its loading (mpm.point).
 """
 
+import functools
 import itertools
 import json
 import subprocess
 import sys
 
 import numpy as np
+import scipy.linalg  # noqa: F401 - its BLAS is one of those that are limited
+from threadpoolctl import ThreadpoolController
 
 from mpm import compiling
 from mpm.config.rules_frame import named
@@ -49,14 +52,21 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
     if not compiling.begun():
         compiling.expect(experiment)
         compile_ahead(experiment)
-    if getattr(experiment.model, "kind", "full") == "auto":
-        from mpm.reduce.choose import smallest
+    with blas().limit(limits=1, user_api="blas"):
+        if getattr(experiment.model, "kind", "full") == "auto":
+            from mpm.reduce.choose import smallest
 
-        turns = itertools.count()
-        run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, threads, keeper and Turn(keeper, next(turns))))
-        run.finals |= misfits(experiment, run)
-        return complete(experiment, run)
-    return run_named(experiment, beat, compare, threads, keeper)
+            turns = itertools.count()
+            run = smallest(experiment, lambda smaller: run_named(smaller, beat, compare, threads, keeper and Turn(keeper, next(turns))))
+            run.finals |= misfits(experiment, run)
+            return complete(experiment, run)
+        return run_named(experiment, beat, compare, threads, keeper)
+
+
+@functools.cache
+def blas() -> ThreadpoolController:
+    """What keeps BLAS to one thread: factors are small, and two threads wait for one another (the loaf by implicit steps: 36 s of processor, 3 s with one)."""
+    return ThreadpoolController()
 
 
 @placed

@@ -98,3 +98,19 @@ def test_one_body_that_cannot_move_among_others_is_refused(core):
     bodies = core.config(1)["bodies"] | {"stone": {"shape": {"box": {"lower": [1.5], "upper": [1.75]}}, "material": "stone"}}
     with pytest.raises(SceneError, match="stone"):
         mpm.run_point(core.experiment(1, bodies=bodies, materials=materials))
+
+
+def test_a_run_takes_one_thread_of_blas():
+    """Whoever imported NumPy, and whatever the environment says; afterwards all is as it was."""
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    def counts():
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    matter = {"m": {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0}}}}
+    point = {"grid": {"dimension": 0}, "bodies": {"body": {"shape": "point", "material": "m"}}, "materials": matter,
+             "loading": [{"strain_rate": {"xx": 0.1}}], "time": {"end": 1}, "output": {"every": 0.1}}  # fmt: skip
+    seen = []
+    with threadpool_limits(2, "blas"):
+        mpm.run_point(mpm.load(point), beat=lambda *_: seen.append(counts()) and False)
+        assert seen and all(one == {1} for one in seen) and counts() == {2}

@@ -6,6 +6,7 @@ assemble  potential, residual and tangent of the particles
 contact   the same of pieces of surface at contact walls
 newton    the minimisation: line search, shifts
 deliver   what particles keep of the nodes' answer
+extrapolate  a step and two halves of it make one of order 2
 drive     heat and mechanics step by step, in steps chosen by their error; what fails is cut and tried again
 Used only where `method.mechanics` says so: nothing of it is compiled otherwise.
 

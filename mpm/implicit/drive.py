@@ -1,8 +1,9 @@
 """Heat and mechanics step by step, at steps of their own choosing (docs/physics.md 17).
 
-A step   heat over dt (as the run gives it), laws at the new temperature, Newton's method, particles.
-Error    rms over particles of |u - predictor| dt/(dt + dt_before): predictor is what the particles' last velocities would move. The next step is
-         dt clip(0.9 sqrt(tolerance L/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
+A step   heat over dt (as the run gives it), laws at the new temperature, Newton's method, particles: of order 1. It is made once over dt and from the same
+         start twice over dt/2; what is kept is twice the second less the first (mpm.implicit.extrapolate): of order 2, heat and motion together.
+Error    the larger of rms |x_2 - x_1|/L and WARMER rms |Theta_2 - Theta_1|/(highest less lowest temperature so far). The next step is
+         dt clip(0.9 sqrt(REACH tolerance/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
          stresses are slightly out of balance with the new weights, and the move that mends this does not shrink with dt. The first step is exempt:
          a body that is put on its wall must sag.
 Kinetic  energy of motion over what gravity and loads have worked so far. Where a material without viscosity flows and it stays above SWIFT for PATIENCE steps,
@@ -20,21 +21,23 @@ from mpm.boundary import directions
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.implicit.contact import STIFFNESS, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
+from mpm.implicit.extrapolate import extrapolate
 from mpm.implicit.newton import Problem, minimise
 from mpm.implicit.nodes import new_nodes
 from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
 from mpm.memory import arrays, fill
-from mpm.outcome import BUDGET, COMPLETED, NO_EQUILIBRIUM, Outcome, outcome
+from mpm.outcome import BUDGET, COMPLETED, INVERTED, NO_EQUILIBRIUM, Outcome, outcome
 from mpm.state import Surface
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
 TOLD = {"rejected": "steps_rejected", "failed": "steps_failed", "iterations": "newton_iterations", "shifts": "newton_shifts", "deepest": "wall_depth",
         "kinetic_over_work": "kinetic_over_work"}  # fmt: skip
 SWIFT, PATIENCE = 0.05, 20
+REACH = 3.0  # the error of the first-order step may be this much of the tolerance: what is kept is closer
 LEAST = 1e-4  # of the first step that was tried
-REJECT = 2.0  # of the tolerance: an error from which a step is made again
+REJECT = 2.0  # of what is aimed at: an error from which a step is made again
 CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver")  # what a shorter step may cure
 
 
@@ -70,7 +73,8 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         told, left = clock.told, until - clock.time
         count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)))
         dt, before = left / count, keep(scene, clock)
-        error, found = one_step(scene, clock, work, dt, warm)
+        error, found = pair(scene, clock, work, dt, warm)
+        told = clock.told
         if not found.ok or too_far(scene, told, error):
             told = put_back(scene, clock, before)
             if not found.ok and (dt * CUT < LEAST * scene.implicit.first or found.kind not in CURED or told["swift"] >= PATIENCE):
@@ -82,7 +86,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         binding = "time.step" if scene.step else "error of the step"
         clock.bound[binding] = clock.bound.get(binding, 0) + 1
         clock.steps += 1
-        clock.time = until if count == 1 else clock.time + dt
+        clock.time = until if count == 1 else before[1]["time"] + dt
         recorder.watch(scene, clock.time)
         if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
@@ -90,25 +94,40 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
     return guards.whole(scene, clock)
 
 
-def one_step(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
+def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
+    """One step of dt, two of half of it from the same start, and twice the second less the first: (error, outcome). See the module's docstring."""
+    start = keep(scene, clock)
+    if not (found := one_step(scene, clock, work, dt, warm)).ok:
+        return math.inf, found
+    once, spent = keep(scene, clock), vars(clock)["time"]
+    put_back(scene, clock, start)
+    for part in range(2):
+        clock.time = spent + 0.5 * dt * part
+        if not (found := one_step(scene, clock, work, 0.5 * dt, warm)).ok:
+            return math.inf, found
+    error = extrapolate(scene, clock, work, once, start)
+    return error, outcome(COMPLETED) if math.isfinite(error) else outcome(INVERTED, time=clock.time * scene.scale, step=clock.steps)
+
+
+def one_step(scene, clock, work, dt: float, warm) -> Outcome:
     """Heat, then mechanics; the other way round where heat passes by touch, as motion says who touches."""
     later = scene.meeting is not None and scene.meeting.warms
     now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
-    error, found = 0.0, outcome(COMPLETED) if later else warm(scene, clock, work, clock.time, dt, now)
+    found = outcome(COMPLETED) if later else warm(scene, clock, work, clock.time, dt, now)
     if found.ok:
-        error, found = mechanical_step(scene, clock, dt)
-    return error, warm(scene, clock, work, clock.time, dt, now) if found.ok and later else found
+        found = mechanical_step(scene, clock, dt)
+    return warm(scene, clock, work, clock.time, dt, now) if found.ok and later else found
 
 
 def factor(how: Implicit, error: float) -> float:
-    """By how much the step after one with this error [m] may be longer."""
-    return min(GROW, max(SHRINK, SAFE * math.sqrt(how.tolerance * how.size / error))) if error > 0 else GROW
+    """By how much the step after one with this error may be longer."""
+    return min(GROW, max(SHRINK, SAFE * math.sqrt(REACH * how.tolerance / error))) if error > 0 else GROW
 
 
 def too_far(scene, told: dict, error: float) -> bool:
     """Whether a step is to be made again for its error."""
     free = scene.step is not None or told["again"] or told["last"] == 0
-    return not free and error > REJECT * scene.implicit.tolerance * scene.implicit.size
+    return not free and error > REJECT * REACH * scene.implicit.tolerance
 
 
 def keep(scene, clock) -> tuple:
@@ -129,8 +148,8 @@ def put_back(scene, clock, before: tuple) -> dict:
     return clock.told
 
 
-def mechanical_step(scene, clock, dt: float) -> tuple[float, Outcome]:
-    """One step of dt: (error [m], outcome); particles move only where it is ok."""
+def mechanical_step(scene, clock, dt: float) -> Outcome:
+    """One step of dt; particles move only where it is ok."""
     how, told, body = scene.implicit, clock.told, scene.bodies[0]
     lam, mu = stiffest(body)
     nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity, mu)
@@ -140,21 +159,17 @@ def mechanical_step(scene, clock, dt: float) -> tuple[float, Outcome]:
     skin = new_skin(len(scene.gravity), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
     lay_skins(scene.space, scene.bodies, skin)
     pushed = may_touch(scene.space, skin, how.stops, STIFFNESS * (lam + 2 * mu) / scene.space.h)
-    guess = dt * nodes.v
-    answer = minimise(Problem(scene.space, body, nodes, pushed, dt, drag), guess)
+    answer = minimise(Problem(scene.space, body, nodes, pushed, dt, drag), dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
     if answer.u is None:
-        return math.inf, outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
-    astray = answer.u - guess
-    gap = np.einsum("pk,pkc->pc", nodes.w, signed(nodes, astray))
-    error = math.sqrt(float(np.mean(np.sum(gap * gap, axis=1)))) * dt / (dt + (told["last"] or dt))
+        return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
     work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2))
     clock.reset()
     report = clock.reports[0]
     deliver(scene.space, body, nodes, answer.u, dt, work, report)
     if report[CODE] != 0:
         report[STEP] = 0
-        return error, outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
+        return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
     clock.gather(dt)
     told["work"] += abs(float(np.sum(nodes.push * answer.u)))
     kinetic = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)) / max(told["work"], 1e-300)
@@ -162,21 +177,15 @@ def mechanical_step(scene, clock, dt: float) -> tuple[float, Outcome]:
     told["swift"] = told["swift"] + 1 if kinetic > SWIFT and report[DISSIPATED] > 0 and rate_independent(body.flow) else 0
     if told["swift"] > PATIENCE:
         said = f"(inertia carries it: energy of motion is {100 * kinetic:.0f} % of the work of gravity and loads)"
-        return error, outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail=said)
+        return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail=said)
     told["deepest"] = max(told["deepest"], float(answer.depth.max(initial=0.0)))
     if scene.meeting is not None:
         for row in np.unique(pushed.row[answer.depth > 0]):
             touched = scene.meeting.touched(0, int(row))
             touched[np.unique(pushed.piece[(answer.depth > 0) & (pushed.row == row)])] += dt
-    return error, outcome(COMPLETED)
+    return outcome(COMPLETED)
 
 
 def rate_independent(flow) -> bool:
     """Whether a material flows at once, whatever the rate."""
     return isinstance(flow, EllipseRadial) and isinstance(flow.eta, Constant) and flow.eta.constant == 0
-
-
-def signed(nodes, u: np.ndarray) -> np.ndarray:
-    """Displacements (N, M, D) that each particle sees on its nodes."""
-    turns = np.where(nodes.flip[:, :, None] >> np.arange(u.shape[1]) & 1, -1.0, 1.0)
-    return turns * u[nodes.node]

@@ -42,7 +42,7 @@ class Group:
 
 
 def groups(experiment, step: float | None = None) -> list[Group]:
-    """Every group of every body that the scene's physics gives a meaning to. `step` [s] is the time step, for the Courant number."""
+    """Every group of every body that the scene's physics gives a meaning to. `step` [s] is the explicit time step, for the Courant number."""
     found = []
     for one in scales(experiment).values():
         found += [*heat(experiment, one), *motion(experiment, one), *coupled(experiment, one)]

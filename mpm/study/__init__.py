@@ -14,6 +14,7 @@ Further files
     figures        the figures of "Speed against accuracy" in the README, by one command
     front          which settings are worth their time, and what may be ranked
     house          the house in numbers, of any checkout
+    implicit       implicit mechanics beside explicit steps, error against time
     limits         how far the machine's own limits are
     menu           the usual methods and refinements of a chart, by what physics a config has
     mutants        do the tests bite? One place of the source is changed, and the nearest tests are run

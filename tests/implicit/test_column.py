@@ -32,14 +32,12 @@ def top_and_middle():
     return float(np.mean(np.cumsum(stretch) / 20000 - 0.5 * stretch / 20000))
 
 
-def test_one_step_is_of_order_two():
-    errors = []
-    for n in (4, 8, 16, 32):
+def test_one_step_to_equilibrium():
+    """A step over dt alone is of order 2 in the cell (4.8e-3 to 6.5e-5); the pair is nearer everywhere, down to what its one remapping costs (6e-5)."""
+    for n, most in ((4, 4.8e-3), (8, 1.1e-3), (16, 2.7e-4), (32, 6.5e-5)):
         run = mpm.run(column(n))
         assert int(run["/"].status) == 0
-        errors.append(abs(float(run["/"].position_mean_x) - top_and_middle()))
-    assert errors[-1] < 6.5e-5
-    assert np.log2(errors[0] / errors[-1]) / 3 > 1.8
+        assert abs(float(run["/"].position_mean_x) - top_and_middle()) < most
 
 
 def test_a_floating_body_does_not_drift():
@@ -52,10 +50,10 @@ def test_a_floating_body_does_not_drift():
 
 @pytest.mark.parametrize("end", [1.0])
 def test_free_fall(end):
-    """Backward Euler keeps the impulse to round-off: v = g t, and falls g dt t/2 too far."""
+    """The impulse to round-off, v = g t; and what a step of order 1 falls too far, g dt t/2, the extrapolation takes off."""
     run = mpm.run(column(16, gravity=[-0.01], bodies={"column": {"shape": {"box": {"lower": [0.3], "upper": [1.1]}}, "material": "soft"}},
                          method={"mechanics": "implicit"}, time={"end": end, "step": 0.1}, output={"every": 0.1}))  # fmt: skip
     series = run["series"]
     np.testing.assert_allclose(series.momentum_x, -0.01 * series.time * 800, rtol=0, atol=1e-9)
     fallen = series.position_mean_x.values[0] - series.position_mean_x.values[-1]
-    assert fallen == pytest.approx(0.5 * 0.01 * end * (end + 0.1), rel=1e-8)
+    assert fallen == pytest.approx(0.5 * 0.01 * end * end, rel=1e-8)

@@ -29,3 +29,68 @@ def test_more_than_it_bears_is_an_outcome_without_viscosity(eta, ok):
     assert run.outcome.ok == ok
     if not ok:
         assert run.outcome.kind == "no_equilibrium" and "eta" in run.outcome.advice
+
+
+STUDIES = LOAF.parents[1] / "studies"
+
+
+def whole(size, h):
+    """The extent of at least `size` [mm] that is a whole number of cells."""
+    return f"{np.ceil(size / h) * h} mm"
+
+
+def placed(case, rng):
+    """A case at a random cell and, where its floor allows it, a random offset sideways."""
+    if case == "loaf":
+        h = rng.uniform(2.2, 4.0)
+        return mpm.load(LOAF, {"grid.cell": f"{h} mm", "grid.size": f"[{whole(64, h)}, {whole(64, h)}]"})
+    if case == "round slump":
+        h = rng.uniform(0.8, 2.5)
+        return mpm.load(STUDIES / "viscous_slump.yaml", {"grid.cell": f"{h} mm", "grid.size": f"[{whole(32, h)}, {whole(24, h)}]"})
+    if case == "plane slump":
+        h, offset = rng.uniform(0.8, 2.5), rng.uniform(-0.5, 0.5)
+        box = "{box: {lower: [12 mm, 0], upper: [26 mm, 15 mm]}}"
+        return mpm.load(STUDIES / "viscous_slump.yaml", {
+            "grid.dimension": "2", "grid.cell": f"{h} mm", "grid.size": f"[{whole(40, h)}, {whole(24, h)}]", "bodies.disc.shape": box,
+            "method.offset": f"[{offset}, 0]", "output.observables": "[position.max_y, position.max_x]"})  # fmt: skip
+    h = rng.uniform(1.0, 8.0)
+    return mpm.load(STUDIES / "viscous_column.yaml", {"grid.cell": f"{h} mm", "grid.size": f"[{whole(100, h)}]"})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["loaf", "round slump", "plane slump", "column"])
+def test_wherever_it_is_placed(case):
+    """Twenty-five random placements each: no step fails, no matrix needs a shift."""
+    rng = np.random.default_rng(5)
+    for _ in range(25):
+        run = run_point(placed(case, rng))
+        assert run.outcome.ok and run.facts["failed"] == 0 and run.facts["shifts"] == 0, run.facts
+
+
+@pytest.mark.slow
+def test_a_step_of_a_minute_and_sudden_gravity():
+    """Steps of 60 s converge or are cut; the first step of a body that is put on its wall sags by more than a tenth of a cell and starts."""
+    run = run_point(mpm.load(LOAF, {"time.step": "60", "time.end": "240", "output.every": "60"}))
+    assert run.outcome.ok and run.finals["position_max_z"] == pytest.approx(50.1e-3, rel=0.02)
+    soft = run_point(mpm.load(STUDIES / "viscous_slump.yaml", {"time.end": "0.5", "output.every": "0.5"}))
+    assert soft.outcome.ok and soft.facts["failed"] == 0
+
+
+@pytest.mark.slow
+def test_the_loaf_is_that_of_explicit_steps():
+    """Time scaling by 250 and implicit steps: top and side within 0.5 %."""
+    asked = {"output.every": "60"}
+    one = run_point(mpm.load(LOAF, asked))
+    two = run_point(mpm.load(LOAF, asked | {"method.mechanics": "explicit", "time.scale": "250"}))
+    for name in ("position_max_z", "position_max_r"):
+        assert one.finals[name] == pytest.approx(two.finals[name], rel=5e-3)
+
+
+@pytest.mark.slow
+def test_the_slump_is_that_of_explicit_steps():
+    """At the real time, 1 mm: height and width within 0.5 %."""
+    asked = {"grid.cell": "1 mm", "time.end": "2", "output.every": "2"}
+    one = run_point(mpm.load(STUDIES / "viscous_slump.yaml", asked))
+    two = run_point(mpm.load(STUDIES / "viscous_slump.yaml", asked | {"method.mechanics": "explicit"}))
+    for name in ("position_max_z", "position_max_r", "position_mean_r"):
+        assert one.finals[name] == pytest.approx(two.finals[name], rel=5e-3)
