@@ -68,7 +68,7 @@ def run(
             dropped = "; ".join(part["dropped"] for part in model["dropped"])
             say(f"  model: {model['name']}" + (f", without {dropped}" if dropped else "; nothing can be left out"), quiet=quiet)
         if "newton_iterations" in record.finals:
-            say(f"  {implicit(record.finals)}", quiet=quiet)
+            say(f"  {implicit(record.steps, record.finals)}", quiet=quiet)
         if idle := record.facts.get("threads_idle"):
             say(f"  {idle}", quiet=quiet)
         for text in record.warnings:
@@ -77,9 +77,9 @@ def run(
     raise typer.Exit({"interrupted": 130, "terminated": 143}.get(progress.stopped, 4 if record.status != OK else 3 if strict and record.warnings else 0))
 
 
-def implicit(finals: dict) -> str:
+def implicit(steps: int, finals: dict) -> str:
     """How the steps of implicit mechanics went."""
-    counts = {name: int(finals[name]) for name in ("steps", "steps_rejected", "steps_failed", "newton_iterations", "newton_shifts")}
+    counts = {name: int(finals[name]) for name in ("steps_rejected", "steps_failed", "newton_iterations", "newton_shifts")}
     said = "implicit mechanics: {steps} steps ({steps_rejected} more made again for their error, {steps_failed} cut), {newton_iterations} iterations, "
     deep = f", at most {1e3 * finals['wall_depth']:.2g} mm deep in a wall" if finals["wall_depth"] > 0 else ""
-    return (said + "{newton_shifts} shifts").format(**counts) + f"; kinetic energy {finals['kinetic_over_work']:.1g} of the work done{deep}"
+    return (said + "{newton_shifts} shifts").format(steps=steps, **counts) + f"; kinetic energy {finals['kinetic_over_work']:.1g} of the work done{deep}"
