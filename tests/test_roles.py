@@ -3,6 +3,7 @@
 The same scenes run here, compiled, and in a process with NUMBA_DISABLE_JIT=1, which also says which functions it entered.
 """
 
+import functools
 import json
 import os
 import subprocess
@@ -71,7 +72,7 @@ def results():
 
 
 def registered():
-    """{role.kind: code place} of every function that a role of the rooms of a step may choose."""
+    """{role.kind: (role, kind, function)} of all that a role of the rooms of a step may choose."""
     import mpm.simulation  # noqa: F401  imports the rooms
 
     found = {}
@@ -79,21 +80,26 @@ def registered():
         if room.startswith(("mpm.transfer", "mpm.boundary", "mpm.heat", "mpm.integrate", "mpm.diagnostics")):
             for name, role in vars(module).items():
                 if hasattr(role, "registry") and hasattr(role, "dispatch") and role.__module__ == room:
-                    for kind, function in role.registry.items():
-                        if kind is not object:
-                            code = getattr(function, "py_func", function).__code__
-                            found[f"{name}({kind.__name__})"] = [code.co_filename, code.co_firstlineno]
+                    found |= {f"{name}({kind.__name__})": (role, kind, function) for kind, function in role.registry.items() if kind is not object}
     return found
 
 
+def noting(function, entered):
+    @functools.wraps(function)
+    def noted(*arguments):
+        entered.add(function)
+        return function(*arguments)
+
+    return noted
+
+
 def in_plain_python():
-    """Run without compilation, and note every function entered."""
-    entered = set()
-    sys.setprofile(lambda frame, event, _: entered.add((frame.f_code.co_filename, frame.f_code.co_firstlineno)) if event == "call" else None)
+    """Run without compilation, and note which functions of roles were entered."""
+    entered, roles = set(), registered()
+    for role, kind, function in roles.values():
+        role.register(kind, noting(function, entered))
     found = results()
-    sys.setprofile(None)
-    missed = [name for name, place in registered().items() if tuple(place) not in entered]
-    print(json.dumps({"results": found, "missed": missed}))
+    print(json.dumps({"results": found, "missed": [name for name, (_, _, function) in roles.items() if function not in entered]}))
 
 
 @pytest.fixture(scope="module")
