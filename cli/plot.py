@@ -40,14 +40,20 @@ def plot(
     """
     from mpm.plots import figures
 
-    if names == ["snapshot"]:
+    names = names or ["overview"]
+    if path is not None and len(names) > 1:
+        from mpm.plots import UnknownFigure
+
+        raise UnknownFigure(f"one file cannot hold {len(names)} figures; leave the file out, or name one figure")
+    others = [name for name in names if name != "snapshot"]
+    if others:
+        more = {"over": over} | ({"of": of} if "snapshot" not in names else {})
+        for written in figures(out, others, path, svg, **{name: value for name, value in more.items() if value is not None}):
+            say(str(written))
+    if "snapshot" in names:
         from mpm.movies import still
         from mpm.plots import dataset_of
 
         target = path or dataset_of(out).parent / f"snapshot{'.svg' if svg else '.png'}"
         still(out, point or (), target, of, [when for part in at or () for when in (part if isinstance(part, list) else [part])])
         say(str(target))
-        return
-    more = {name: value for name, value in (("of", of), ("over", over)) if value is not None}
-    for written in figures(out, names or None, path, svg, **more):
-        say(str(written))
