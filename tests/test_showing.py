@@ -22,5 +22,7 @@ def test_the_commands_of_the_page(tmp_path):
         done = subprocess.run(["bash", "-c", script + short], cwd=tmp_path, env=os.environ, capture_output=True, text=True, timeout=600, check=False)
         assert done.returncode == 0, (command, done.stdout, done.stderr)
     for name in ("slump", "loaf"):
-        made = [tmp_path / "results" / file for file in (f"{name}/report.html", f"{name}/movie.webp", f"{name}.vtkhdf")]
+        made = [tmp_path / "results" / file for file in (f"{name}/report.html", f"{name}/movie.webp", f"{name}/paraview.vtkhdf")]
         assert all(path.stat().st_size > 1000 for path in made), made
+        assert "data:image/webp" in made[0].read_text(encoding="utf-8")
+    assert (tmp_path / "results/loaf/ovens.webp").stat().st_size > 1000

@@ -49,6 +49,13 @@ def test_a_movie_has_the_frames_that_were_asked_for(run, tmp_path, suffix):
     assert told == [(1, 3), (2, 3), (3, 3)] and not np.array_equal(seen[0], seen[2])
 
 
+@pytest.mark.parametrize("speed", [0.5, 2.0])
+def test_speed_is_seconds_of_the_run_a_second(sweep, tmp_path, speed):
+    path = mpm.movie(sweep, to=tmp_path / "a.gif", speed=40 * speed)  # a snapshot every 2 s
+    with Image.open(path) as image:
+        assert image.info["duration"] == pytest.approx(1000 * 2 / (40 * speed), abs=5)
+
+
 def test_points_side_by_side_and_what_cannot_be_shown(run, sweep, tmp_path):
     assert mpm.movie(sweep, "kappa=all", tmp_path / "a.webp").exists()
     figure = still(sweep, ["kappa=1", "kappa=3"], tmp_path / "a.png", at=[0, 8])
