@@ -11,7 +11,6 @@ import math
 from mpm.config.rules_frame import named
 from mpm.config.rules_size import MOST_STEPS, MOST_UNKNOWNS
 from mpm.records.frames import SPILL
-from mpm.scene.framing import choice, in_likely_frame
 from mpm.scene.inventory import output_bytes, physics, ticks
 from mpm.scene.refusal import SceneError, placed
 
@@ -51,6 +50,8 @@ def estimate(experiment) -> dict:
         return estimate_rigid(experiment)
     if experiment.method.frame != "auto":
         return estimate_moving(experiment)
+    from mpm.scene.framing import choice  # needs numba, which the parent of a sweep does without
+
     frame, why = choice(mechanics_settled(experiment))
     try:
         return estimate_moving(named(experiment, frame)) | {"frame": f"{frame}: {why}"}
@@ -228,6 +229,8 @@ def settled(experiment):
     """The experiment with explicit or implicit mechanics in place of `auto`, and in the frame that `method.frame: auto` begins with."""
     if not experiment.moving or experiment.grid.dimension == 0:
         return experiment
+    from mpm.scene.framing import in_likely_frame
+
     return in_likely_frame(mechanics_settled(experiment))
 
 

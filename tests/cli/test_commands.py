@@ -162,7 +162,7 @@ def test_collect_and_compare(mpm, write, tmp_path):
     assert mpm("compare", "a/sweep.nc", "b/sweep.nc")[0] == 0 and len(first) == (tmp_path / "a" / "sweep.nc").stat().st_size
     mpm("sweep", write([0.2, 0.6]), "-j", "1", "-o", "c")
     document = mpm.document("compare", "a", "c")
-    assert not document["same"] and any(line.startswith("/kappa: 1 of 2 differ, most at (1,): 0.5 and 0.6") for line in document["differences"])
+    assert not document["same"] and any(line.startswith("/kappa: 1 of 2 differ, most at kappa=0.5: 0.5 and 0.6") for line in document["differences"])
     assert mpm("compare", "a", "c", "--rtol", "0.5")[0] == 1  # run ids still differ
     assert mpm("compare", "a", "nowhere")[0] == 2
 
