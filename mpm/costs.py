@@ -96,6 +96,8 @@ def bytes_particle(experiment) -> int:
     state = real * (2 * D + D * D + COMPONENTS[D] + 3)  # x, v, C, B, J, m, V0
     if any(material.heat is not None for material in experiment.materials.values()):
         state += real * (1 + D) + 8  # theta and its gradient; theta at the start
+    if experiment.sources:
+        state += 8 * (2 * D + 3 + 8)  # place at the start, force, time, rest, temperature, and a formula eight deep
     if experiment.loads:
         state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
     return state + real * (D + D * D) + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8

@@ -1,4 +1,4 @@
-"""Fields of snapshots: of the grid, and of particles: one function a name, of the scene, the body and where its particles were at the start.
+"""Fields of snapshots and sums of motion: of the grid, and of particles: one function a name, of the scene, the body and where its particles were at the start.
 
 Tensors have a column a component, in the order of mpm.state (mpm.records.variables.components).
 stress              Cauchy [Pa];   strain: elastic Hencky strain, 1/2 log of F_e F_e^T [-], the thermal part included
@@ -14,6 +14,7 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import grid_shape, nodal, strains, stresses, temperatures, thermal_pressure
 from mpm.error import PLACES, kirchhoff
+from mpm.follow import moved
 from mpm.heat.setting import conditions
 from mpm.records.variables import components
 from mpm.state import PAD, Axisymmetric, Setting
@@ -164,3 +165,25 @@ def stress_on_nodes(scene, shape, volume) -> dict[str, np.ndarray]:
 
 def axis_names(space) -> tuple[str, ...]:
     return ("r", "z") if isinstance(space, Axisymmetric) else AXES[len(grid_shape(space))]
+
+
+def motion_of(space, bodies, outlines):
+    """Sums and extrema of the motion of some bodies."""
+    axes = axis_names(space)
+    x, v, m, J, V = (np.concatenate([getattr(body.particles, name).astype(float) for body in bodies]) for name in ("x", "v", "m", "J", "V0"))
+    V = V * J
+    yield "mass_total", np.sum(m)
+    yield "volume_total", np.sum(V)
+    for k, axis in enumerate(axes):
+        yield f"momentum_{axis}", np.sum(m * v[:, k])
+        yield f"position_mean_{axis}", np.sum(m * x[:, k]) / np.sum(m)
+    if outlines:
+        ends = [moved(outline, body.particles.x, space.h) for outline, body in zip(outlines, bodies, strict=True)]
+        low, high = np.min([end.min(axis=0) for end in ends], axis=0), np.max([end.max(axis=0) for end in ends], axis=0)
+        for k, axis in enumerate(axes):
+            yield from ((f"position_min_{axis}", low[k]), (f"position_max_{axis}", high[k]), (f"extent_{axis}", high[k] - low[k]))
+        if isinstance(space, Axisymmetric):
+            yield "radius_max", high[0]
+    yield "velocity_max", math.sqrt(np.max(np.sum(v * v, axis=1)))
+    yield "J_min", np.min(J)
+    yield "J_max", np.max(J)

@@ -24,7 +24,7 @@ from mpm.diagnostics import (
     thermal_pressure,
 )
 from mpm.error import Errors
-from mpm.fields import axis_names, cauchy, grid_fields, particle_fields
+from mpm.fields import axis_names, cauchy, grid_fields, motion_of, particle_fields
 from mpm.follow import moved, nearest, renumbered, sampled
 from mpm.heat.setting import conditions
 from mpm.memory import Frames, rows
@@ -45,6 +45,8 @@ class Watch:
     probes: dict[str, np.ndarray] = field(default_factory=dict)
     homes: dict[str, int] = field(default_factory=dict)  # number of the body that a probe is a point of; the nearest unless given
     asked: dict[str, tuple[str, str, str]] = field(default_factory=dict)  # dataset name -> (field, probe, part) beside temperatures
+    of: dict[str, tuple[str, int]] = field(default_factory=dict)  # dataset name -> (series, number of the one body that it is told of)
+    bites: dict[str, tuple[str, str]] = field(default_factory=dict)  # dataset name -> (what, tool): mpm.contact.texture
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
     snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # times [s]; a run comes to them as to its output times
     grid: tuple[str, ...] = ()
@@ -78,6 +80,7 @@ class Recorder:
         self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
         self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
         self.capacity = np.concatenate([capacities(body) for body in self.warm]) if self.warm else None  # (N,) at the start [J/K]
+        self.capacities = {b: capacities(scene.bodies[b]) for _, b in scene.watch.of.values() if isinstance(scene.bodies[b].thermal, Thermal)}
         self.times: list[float] = []
         self.shot = math.nan  # when the last snapshot was taken, on the run's clock
         self.series: dict[str, list[float]] = {}
@@ -122,8 +125,8 @@ class Recorder:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
-        met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag) if scene.meeting is not None and scene.implicit is None else ()
-        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *wrong.items(), *met):
+        met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag, clock.time) if scene.meeting is not None and scene.implicit is None else ()
+        for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *self.of_bodies(scene), *wrong.items(), *met):
             self.series.setdefault(name, []).append(float(value))
         self.frame(scene, clock)
 
@@ -158,27 +161,9 @@ class Recorder:
 
     def mechanical(self, scene, clock):
         """Sums and extrema of motion."""
-        axes = axis_names(scene.space)
-        x = np.concatenate([body.particles.x.astype(float) for body in scene.bodies])
-        v = np.concatenate([body.particles.v.astype(float) for body in scene.bodies])
-        m = np.concatenate([body.particles.m.astype(float) for body in scene.bodies])
-        J = np.concatenate([body.particles.J.astype(float) for body in scene.bodies])
-        V = np.concatenate([body.particles.V0.astype(float) for body in scene.bodies]) * J
-        yield "mass_total", np.sum(m)
-        yield "volume_total", np.sum(V)
-        for k, axis in enumerate(axes):
-            yield f"momentum_{axis}", np.sum(m * v[:, k])
-            yield f"position_mean_{axis}", np.sum(m * x[:, k]) / np.sum(m)
-        if scene.outlines:
-            ends = [moved(outline, body.particles.x, scene.space.h) for outline, body in zip(scene.outlines, scene.bodies, strict=True)]
-            low, high = np.min([end.min(axis=0) for end in ends], axis=0), np.max([end.max(axis=0) for end in ends], axis=0)
-            for k, axis in enumerate(axes):
-                yield from ((f"position_min_{axis}", low[k]), (f"position_max_{axis}", high[k]), (f"extent_{axis}", high[k] - low[k]))
-            if isinstance(scene.space, Axisymmetric):
-                yield "radius_max", high[0]
-        yield "velocity_max", math.sqrt(np.max(np.sum(v * v, axis=1)))
-        yield "J_min", np.min(J)
-        yield "J_max", np.max(J)
+        yield from motion_of(scene.space, scene.bodies, scene.outlines)
+        x, m, J, V = (np.concatenate([getattr(body.particles, name).astype(float) for body in scene.bodies]) for name in ("x", "m", "J", "V0"))
+        V = V * J
         if isinstance(scene.space, Axisymmetric):
             for share in (95, 99):
                 yield f"radius_{share}", radius_holding(0.01 * share, x[:, 0], V)
@@ -199,7 +184,10 @@ class Recorder:
         yield "dissipation_total", clock.dissipated
         work = clock.worked + (scene.meeting.work if scene.meeting is not None else 0.0)
         yield "work_loads", work
-        self.gone = work + clock.swelled + clock.softened - clock.dissipated - (total - self.series.get("energy_total", [total])[0])
+        rubbed = scene.meeting.friction if scene.meeting is not None else 0.0
+        if scene.meeting is not None:
+            yield "dissipation_friction", rubbed
+        self.gone = work + clock.swelled + clock.softened - clock.dissipated - rubbed - (total - self.series.get("energy_total", [total])[0])
         yield "dissipation_transfer", self.gone
 
     def thermal(self, scene, clock):
@@ -232,6 +220,19 @@ class Recorder:
             X, m = (np.concatenate(part) for part in zip(*found, strict=True))
             yield "setting_mean", np.sum(m * X) / np.sum(m)
             yield "setting_min", np.min(X)
+
+    def of_bodies(self, scene):
+        """What is asked of one body."""
+        told = {}
+        for b in {number for _, number in scene.watch.of.values()}:
+            body = scene.bodies[b]
+            told[b] = dict(motion_of(scene.space, (body,), scene.outlines[b : b + 1]))
+            if isinstance(body.thermal, Thermal):
+                theta, capacity = body.thermal.zero + body.thermal.theta.astype(float), self.capacities[b]
+                told[b] |= {"temperature_mean": np.sum(capacity * theta) / np.sum(capacity), "temperature_min": np.min(theta)}
+                told[b] |= {"temperature_max": np.max(theta), "heat_total": heat_since(body, self.start[id(body)])}
+        for name, (base, b) in scene.watch.of.items():
+            yield name, told[b][base]
 
     def at_probes(self, scene):
         """Displacements and stresses that observables ask probes for."""
@@ -267,6 +268,8 @@ class Recorder:
             facts |= {"heat_repaired": clock.repaired, "heat_unrepaired": clock.unrepaired}
         if self.errors is not None:
             finals |= self.errors.finals(np.array(self.times), series)
+        for name, (what, tool) in scene.watch.bites.items():
+            finals[name] = scene.meeting.texture(tool, axis_names(scene.space), series)[what]
         finals["steps"] = float(clock.steps or clock.heat_steps)
         if scene.implicit is not None:
             finals |= scene.implicit.finals(clock.told)

@@ -1,6 +1,6 @@
 """Review: what of a run's records a careful user wants to know, as warnings (mpm.warned). What only a running scene can see is warned of by mpm.guards.
 
-volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion at the temperatures reached explains; not where loads press
+volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion explains; not where loads or moving tools press
 heat      heat content and heat taken in disagree by more than HEAT of the larger, or of what the spread of temperatures holds; XPIC carries temperatures to
           a surface of beta h > SHARP kappa, where it reads particles that are too warm: 2.7, 1.3, 0.7 % of the fall at beta h/kappa = 0.6, 0.3, 0.15, where
           APIC is 0.09, 0.02, 0.005 % off (configs/verification/robin_slab_particles.yaml --set method.temperature=xpic)
@@ -69,7 +69,8 @@ def volume(experiment: Any, run: Run) -> Iterator[str]:
     if "volume_total" not in run.series:
         return
     ratio, (least, most) = float(run.series["volume_total"][-1] / run.series["volume_total"][0]), explained(experiment, run)
-    pressed = any(load.traction is not None for load in experiment.loads)
+    moving = any(getattr(tool.motion, key) is not None for tool in experiment.tools.values() for key in ("velocity", "path", "force"))
+    pressed = moving or any(load.traction is not None for load in experiment.loads)
     for share, word in ((0.0 if pressed else 1 - ratio / least, "lost"), (ratio / most - 1, "gained")):
         if share > VOLUME:
             yield f"{100 * share:.0f} % of the volume is {word} by the end, beyond what expansion explains"

@@ -16,7 +16,7 @@ from mpm.contact.insync import in_sync
 from mpm.guards import Guards, explain
 from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.sorting import Order
-from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SPEED, STEP, SWELL, SWELLED, WORKED
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SOURCED, SPEED, STEP, SWELL, SWELLED, WORKED
 from mpm.integrate.surroundings import jumps
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder, merged, stops
@@ -26,7 +26,7 @@ from mpm.total.drive import advance_references, present_limits, show_all
 from mpm.warming import warm_bodies
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
-GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED}  # sums over steps; worked by loads, swelled by thermal stress
+GATHERED = {"local": HEATED, "dissipated": DISSIPATED, "worked": WORKED, "swelled": SWELLED, "exchanged": SOURCED}  # sums over steps
 UNDERFLOW = 256.0  # the stable step may shrink this much before the run gives up
 
 
@@ -61,6 +61,7 @@ class Scene:
     outlines: tuple = ()  # mpm.follow.Carried: points of its surface; without them no extents are recorded
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
+    turns: tuple = ()  # times at which a source jumps [s]
     watch: Any = None  # what to record: mpm.observe.Watch
     meeting: Any = None  # mpm.contact.meeting.Meeting, or None
     facts: dict = field(default_factory=dict)
@@ -147,7 +148,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
             keeper.save({"clock": vars(clock) | {"spent": clock.spent + time.perf_counter() - began}, **parts})
         return stop
 
-    for end, told in stops(scene.times, merged(scene.watch.snapshots, jumps(scene.surroundings, scene.times[-1])))[clock.output :]:
+    for end, told in stops(scene.times, merged(scene.watch.snapshots, jumps(scene.surroundings, scene.times[-1], scene.turns)))[clock.output :]:
         result = interval(scene, clock, recorder, guards, work, end, look)
         if not result.ok:
             break
@@ -173,8 +174,7 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: fl
     if not cut:
         scene.order.refresh()
         now = present_limits(scene, clock)
-        pace = scene.heat_step or now.pace
-        clock.start, clock.part = clock.time, 0
+        clock.start, clock.part, pace = clock.time, 0, scene.heat_step or now.pace
         clock.parts = max(1, math.ceil((end - clock.start) / pace * (1 - 1e-9))) if np.isfinite(pace) else 1
     while clock.part < clock.parts:
         until = clock.start + (end - clock.start) * (clock.part + 1) / clock.parts

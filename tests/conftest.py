@@ -175,3 +175,42 @@ def without_compiler(config, tests):
     if not all(reports.values()):
         raise RuntimeError(f"tests without the compiler did not run to their end\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
     return reports
+
+
+PLAIN = """
+import json, sys
+from mpm.config import load
+from mpm.runner import run_point
+for line in sys.stdin:
+    config = load(json.loads(line))
+    run = run_point(config, compare=config.exact is not None)
+    series = {name: values.tolist() for name, values in run.series.items()}
+    found = {"kind": run.outcome.kind, "message": run.outcome.message, "times": run.times.tolist(), "series": series, "facts": run.facts,
+             "finals": {name: float(value) for name, value in run.finals.items()}}
+    print(json.dumps(found, default=str), flush=True)
+"""
+
+
+@pytest.fixture(scope="session")
+def plain():
+    """Runs of many configs: outcome `kind`, `times`, `series` as arrays, `facts`. One child for all tests: to start it takes longer than most runs."""
+    with tempfile.TemporaryFile("w+") as said:
+        child = subprocess.Popen([sys.executable, "-c", PLAIN], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
+                                 env=os.environ | {"NUMBA_DISABLE_JIT": "1"})  # fmt: skip
+
+        def played(configs: list[dict]) -> list[dict]:
+            runs = []
+            for config in configs:
+                child.stdin.write(json.dumps(config) + "\n")
+                child.stdin.flush()
+                line = child.stdout.readline()
+                assert line, (said.seek(0), said.read()[-3000:])
+                run = json.loads(line)
+                run["series"] = {name: np.array(values, dtype=float) for name, values in run["series"].items()}
+                run["times"] = np.array(run["times"])
+                runs.append(run)
+            return runs
+
+        yield played
+        child.stdin.close()
+        assert child.wait() == 0

@@ -21,7 +21,7 @@ from mpm.materials import (
     settled, stress, table, temperature_of, value, warmed,
 )
 from mpm.point.heat import content, exchange as lump, time_constant
-from mpm.point.state import Lumped
+from mpm.point.state import Lumped, Sourced
 from mpm.point.step import relaxation
 from mpm.sources import Made, heat, push
 from mpm.state import Expansion, GridHeating, Heating, Isothermal, Latched, NoExpansion, NoHeating, NoRadiation, Radiation, Softening, Surface, Thermal
@@ -173,6 +173,7 @@ for radiation in (NoRadiation(), Radiation([Q(0.9)], [450 * K], [5 * K])):
     surface = Surface(None, None, None, None, None, [beta], [20 * K], [3 * K], [50 * W / u.m**2], radiation)
     units(meet, (surface, 0, 40 * K, 300 * K, Q(0.5)), "W/m^2/K", "K", "W/m^2", free=[(2,), (3,)] if isinstance(radiation, NoRadiation) else [])
 units(lump, (Lumped(20 * W / u.m**3 / K, 400 * K), Thermal([20 * K], None, 300 * K, None, Constant(alpha)), R0, Q(1.1), 3 * u.s), "J/m^3")
+units(lump, (Sourced(20 * W / u.m**3 / K, 400 * K, 50 * W / u.m**3), Thermal([20 * K], None, 300 * K, None, Constant(alpha)), R0, Q(1.1), 3 * u.s), "J/m^3")
 units(time_constant, (Lumped(20 * W / u.m**3 / K, 400 * K), thermal(), R0), "s", free=[(0, 1), (1, 0), (1, 2)])
 units(content, (Thermal([20 * K], None, 300 * K, None, Constant(alpha)),), "J/kg", free=[(0, 2)])
 

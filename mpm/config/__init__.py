@@ -31,9 +31,11 @@ Further files
     rules_scene       rules for bodies, materials, surfaces, walls and grid
     rules_setting     rules of what sets
     rules_size        rules for sizes that no machine takes
+    rules_sources     rules for sources
     rules_tools       rules for tools, and for observables of what bodies meet
     rules_stability   rules of `stability:`
     scalars           A plain scalar of YAML to a value of Python, by the core schema of YAML 1.2
+    sources           heat from within a body, and a force by its mass
     stability         A map of failures
     tabs              tabs where YAML 1.2 allows them (its sections 6.1 to 6.3), which ruamel.yaml refuses
     tools             rigid bodies that move as they are told

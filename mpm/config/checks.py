@@ -16,6 +16,7 @@ from mpm.config import rules_point as point
 from mpm.config import rules_scene as scene
 from mpm.config import rules_setting as setting
 from mpm.config import rules_size as size
+from mpm.config import rules_sources as within
 from mpm.config import rules_tools as tools
 from mpm.config.explain import Finding
 from mpm.config.partial import Unknown
@@ -85,6 +86,9 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.surface_twice, each("surfaces")),
     (scene.surface_names, once),
     (scene.load, each("loads")),
+    (within.source, each("sources")),
+    (within.formula, each("sources")),
+    (within.exact, once),
     (scene.contact, each("contacts")),
     (scene.walls, each("walls")),
     (tools.tool, each("tools")),

@@ -23,6 +23,7 @@ from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
 from mpm.config.parameters import Named
 from mpm.config.quantities import Acceleration
+from mpm.config.sources import Source
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
 from mpm.config.tools import Tool
@@ -40,6 +41,7 @@ class Experiment(Model):
     bodies: dict[str, Body] = doc(min_length=1, description="bodies by name")
     materials: dict[str, Material] = doc(min_length=1, description="materials by name")
     surfaces: tuple[Surface, ...] = doc((), description="surfaces that exchange heat")
+    sources: tuple[Source, ...] = doc((), description="heat from within bodies, and forces by their mass")
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
     contacts: tuple[Pair, ...] = doc((), description="pairs of bodies that meet; those not named slide without friction and conduct without resistance")
     tools: dict[str, Tool] = doc({}, description="rigid bodies that move as they are told, by name")

@@ -111,12 +111,13 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
 
 
 def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, path: tuple = ()) -> Iterator[Finding]:
-    from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, threshold
+    from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, single, threshold
 
     path = path or ("output", "observables", index)
     if not observable_exists(name):
         dimension = experiment.grid.dimension
         allowed = [word for word in OBSERVABLES if dimension is MISSING or fits(word, dimension)] + [
+            "<observable>.<body>",
             "time_to.<probe>.<value>_degC",
             "time_to.<probe>.<value>_K",
             "displacement.<probe>_<direction>",
@@ -128,7 +129,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
-    found = threshold(name, experiment.output.probes)
+    found, one = threshold(name, experiment.output.probes), single(name)
     if found is not None:
         known = experiment.output.probes
         if found.probe not in known:
@@ -139,6 +140,13 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
     elif asked is not None and not fits(name, experiment.grid.dimension):
         allowed = [f"{asked[0]}.{asked[1]}_{part}" for part in parts(asked[0], experiment.grid.dimension)]
         yield Finding(path, f"there is no such component in dimension {experiment.grid.dimension}", allowed, given=name)
+    elif one is not None and one[1] not in experiment.bodies:
+        known_ones = list(experiment.bodies)
+        yield Finding(path, f"there is no body {one[1]!r}", known_ones, near(one[1], known_ones), given=name)
+    elif one is not None and experiment.grid.dimension == 0:
+        yield Finding(path, "a material point is the only body", name.rpartition(".")[0], given=name)
+    elif one is not None and one[0].startswith(("temperature", "heat")) and experiment.materials[experiment.bodies[one[1]].material].heat is None:
+        yield Finding(path, f"{one[1]} has no heat", f"a heat section in materials.{experiment.bodies[one[1]].material}", given=name)
     elif not fits(name, experiment.grid.dimension):
         yield Finding(
             path,
@@ -149,7 +157,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
     family = name.split(".", maxsplit=1)[0]
     if family in ("temperature", "heat", "time_to", "area") and not hot and not (family == "area" and met(name)):
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
-    if family in OF_MOTION and not moving and (name not in OF_MATTER or experiment.grid.dimension == 0):
+    if family in OF_MOTION and not moving and ((name.rpartition(".")[0] if one else name) not in OF_MATTER or experiment.grid.dimension == 0):
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)
 
 

@@ -50,8 +50,8 @@ def loading(experiment: Any) -> Iterator[Finding]:
         return
     if not stages and moves(experiment):
         yield lacks(("loading",), "[{until: time, strain_rate: {zz: ...}, stress: {xx: 0, yy: 0}}, ...]")
-    elif not stages and not experiment.surfaces:
-        yield Finding(("bodies",), "nothing happens to the material point", ["surfaces", "loading"], on_key=True)
+    elif not stages and not experiment.surfaces and not experiment.sources:
+        yield Finding(("bodies",), "nothing happens to the material point", ["surfaces", "sources", "loading"], on_key=True)
     for index, stage in enumerate(stages):
         for key in ("strain_rate", "stretch_rate", "stress"):
             if getattr(stage, key) != type(getattr(stage, key))() and not moves(experiment):

@@ -63,6 +63,7 @@ def motion(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
     """An observable of a wall, a tool or a pair: that there is such a thing."""
+    from mpm.records.variables import BITES
     from mpm.records.variables import met as taken_apart
 
     found = taken_apart(name)
@@ -74,7 +75,13 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
         return
     bodies = list(experiment.bodies)
     pairs = [f"{a}_{b}" for k, a in enumerate(bodies) for b in bodies[k + 1 :]]
-    known = pairs if what == "heat" else [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
+    known = (
+        pairs
+        if what == "heat"
+        else list(experiment.tools)
+        if what in ("travel", *BITES)
+        else [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
+    )
     if of not in known:
-        said = f"there is no {'pair of bodies' if what == 'heat' else 'wall, tool or pair of bodies'} {of!r}"
+        said = f"there is no {'pair of bodies' if what == 'heat' else 'tool' if what in ('travel', *BITES) else 'wall, tool or pair of bodies'} {of!r}"
         yield Finding(("output", "observables", index), said, known or "two bodies", near(of, known), given=name)

@@ -67,7 +67,7 @@ class Motion(Spell):
         if self.until is not None and self.until <= getattr(self, "from"):
             raise problem("motion", "the motion ends before it begins", f"above {getattr(self, 'from'):g} [s]", at=("until",))
         for key in ("from", "until"):
-            if self.path is not None and key in self.model_fields_set and getattr(self, key) is not None:
+            if self.path is not None and getattr(self, key):
                 raise problem("motion", f"a path has its own times, and {key} says another", "no `from` and no `until` beside a path", at=(key,))
         return self
 

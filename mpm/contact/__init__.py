@@ -21,5 +21,6 @@ Further files
     drive      how tools move as they are told
     found      the contacts of one step
     insync     velocities at the time of the positions
+    texture    what a press that bites twice says of a body
     links      where heat passes between bodies
 """

@@ -5,10 +5,11 @@ import numpy as np
 from mpm.contact.found import BODY
 
 
-def series(met, axes: tuple[str, ...], since: float):
-    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record [s].
+def series(met, axes: tuple[str, ...], since: float, time: float):
+    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record, at `time` [s].
 
-    force    on bodies by a wall or tool; on the first of a pair by the second
+        force    on bodies by a wall or tool; on the first of a pair by the second
+        travel   of a tool since the start
     torque   of that force about a tool's centre, and about the origin of coordinates else
     """
     touching, B = met.touching, len(met.names)
@@ -19,6 +20,9 @@ def series(met, axes: tuple[str, ...], since: float):
             continue
         yield from told(side or tool, axes, part * touching.pushed[:, at].sum(axis=0), part * touching.turned[:, at].sum(axis=0),
                         part * touching.spread[:, at].sum())  # fmt: skip
+        if tool is not None:
+            moved = met.drive.displacement(met.tool_names.index(tool), time)
+            yield from ((f"travel_{tool}_{axis}", moved[k]) for k, axis in enumerate(axes))
     for a in range(B):
         for b in range(a + 1, B):
             both = f"{met.names[a]}_{met.names[b]}"

@@ -7,6 +7,8 @@ at once; the incomplete factor is made of each body's own block, the link's shar
 Good values  H up to 100 kappa/h; a stiffer link changes the result by less than the cell's error and takes more iterations.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mpm.boundary import directions, extents
@@ -14,7 +16,7 @@ from mpm.boundary.walls import fold, unfold
 from mpm.contact.spots import seen
 from mpm.heat.exchange import meet
 from mpm.integrate.heat_implicit import GAMMA, combine, conductances, drop_ghosts, inside, load, take, wipe
-from mpm.integrate.heat_matrix import MOST, SHIFT, incomplete, matrix, product, smooth
+from mpm.integrate.heat_matrix import blocks, conjugate_gradients, matrix, product, times
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.surface_flux import place, temperature_at
 from mpm.jit import kernel
@@ -140,40 +142,25 @@ def push(at, t, flow, y):
                     y[at[e, k, m]] += (1.0 if k == 0 else -1.0) * t[e, k, m] * flow[e]
 
 
-@kernel
-def joint_gradients(rows, whole, columns, between, at, t, conductance, weight, r, change, tolerance):
-    """As heat_matrix.conjugate_gradients with links: rows without them, `whole` with each block's own share, for the factor. Iterations, or -1."""
-    K = len(r)
-    factor, z, p, q = np.empty_like(rows), np.empty(K), np.zeros(K), np.empty(K)
-    shift = 0.0
-    while not incomplete(whole, columns, between, shift, factor):
-        shift = max(2.0 * shift, SHIFT)
-        if shift > 1e3:
-            return -1
-    change[:] = 0.0
-    before = 1.0
-    for count in range(MOST):
-        size, moved, rho = 0.0, 0.0, 0.0
-        z[:] = r
-        smooth(factor, columns, z)
-        for k in range(K):
-            size += r[k] * r[k] / weight[k]
-            moved += weight[k] * change[k] * change[k]
-            rho += r[k] * z[k]
-        if size <= tolerance * tolerance * moved or rho == 0.0:
-            return count
-        for k in range(K):
-            p[k] = z[k] + rho / before * p[k]
-        product(rows, columns, p, q)
-        push(at, t, conductance * drops(at, t, p), q)
-        curve = 0.0
-        for k in range(K):
-            curve += p[k] * q[k]
-        for k in range(K):
-            change[k] += rho / curve * p[k]
-            r[k] -= rho / curve * q[k]
-        before = rho
-    return -1
+class Linked(NamedTuple):
+    """C + dt A of bodies side by side, and their links."""
+
+    rows: np.ndarray  # (K, m) without them
+    whole: np.ndarray  # (K, m) with each block's own share, for the factor
+    at: np.ndarray  # (L, 2, M) numbers of unknowns
+    t: np.ndarray  # (L, 2, M)
+    conductance: np.ndarray  # (L,) times the step [J/K]
+
+
+@times.register(Linked)
+def times_linked(operator, columns, x, y):
+    product(operator.rows, columns, x, y)
+    push(operator.at, operator.t, operator.conductance * drops(operator.at, operator.t, x), y)
+
+
+@blocks.register(Linked)
+def blocks_linked(operator):
+    return operator.whole
 
 
 def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order: int, tolerance: float, blend: float, affine: float):
@@ -203,7 +190,7 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
         base = np.concatenate([nodes[b, 2, one[b][2]] for b in which])
         push(at, links.t, -step * links.rate * drops(at, links.t, base), r)
         change = np.empty(len(r))
-        count = joint_gradients(rows, whole, columns, made[0][2], at, links.t, step * links.rate, weight, r, change, tolerance)
+        count = conjugate_gradients(Linked(rows, whole, at, links.t, step * links.rate), columns, made[0][2], weight, r, change, tolerance)
         if count < 0:
             for b in which:
                 clean(space, nodes[b], one[b][0])

@@ -51,6 +51,11 @@ class Drive:
             rate = max([rate, *speeds[(one.times[1:] > start) & (one.times[:-1] < start + span)]])
         return rate + float(np.linalg.norm(one.spin)) * self.tools.bound[t]
 
+    def displacement(self, t: int, now: float) -> np.ndarray:
+        """How far tool t has moved since the start (D,) [m]."""
+        one = self.told[t]
+        return np.array([np.interp(now, one.times, x) - x[0] for x in one.path.T]) + self.tools.shift[t]
+
     def gap(self, t: int, start: float, low, high) -> float:
         """Between a box and a ball about tool t, as it stands; infinite where it is gone for good [m]."""
         one, tools = self.told[t], self.tools

@@ -15,6 +15,7 @@ from mpm.contact.links import PERFECT, find_links
 from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
 from mpm.contact.step import Grids, Pace, Touching, advance_touching
+from mpm.contact.texture import texture
 from mpm.contact.tools import NoTools
 from mpm.integrate.step_parts import method_of
 from mpm.integrate.timestep import conductance
@@ -25,7 +26,7 @@ from mpm.state import PAD, Surface, Thermal
 from mpm.transfer import columns, wants_change
 
 SLACK = 0.15  # cells beyond which nothing acts: gaps closer than SURE are in the sweeps
-KEPT = ("warm", "touched", "pushed", "turned", "spread", "deepest", "worked")  # of Touching, by a run that goes on
+KEPT = ("warm", "touched", "pushed", "turned", "spread", "deepest", "worked", "rubbed")  # of Touching, by a run that goes on
 
 
 @dataclass
@@ -61,7 +62,7 @@ class Meeting:
         walls = np.stack([self.walls[self.fields == f].min(axis=0) for f in range(F)])  # a group is a mirror's where one of it is
         tools, K = NoTools() if self.drive is None else self.drive.tools, BODY + B + T
         self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
-                                 np.zeros((B, K, 3)), np.zeros((B, K)), np.zeros(1), np.zeros(1), np.full(n, -1),
+                                 np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
                                  np.array([P // 4 + 64]))  # fmt: skip
         self.passed = np.zeros((B, B))
 
@@ -98,10 +99,22 @@ class Meeting:
         """Of tools on bodies since the start [J]."""
         return float(self.touching.worked[0])
 
-    def series(self, axes: tuple[str, ...], now: float):
-        """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted [s]."""
+    @property
+    def friction(self) -> float:
+        """Work that friction has taken since the start [J]."""
+        return float(self.touching.rubbed[0])
+
+    def series(self, axes: tuple[str, ...], now: float, time: float):
+        """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted, at positions of `time` [s]."""
         since, self.told = now - self.told, now
-        return books.series(self, axes, since)
+        return books.series(self, axes, since, time)
+
+    def texture(self, tool: str, axes: tuple[str, ...], series) -> dict[str, float]:
+        """Of the bites of a tool, along the direction in which it moves most."""
+        axis = max(axes, key=lambda one: np.ptp(series[f"travel_{tool}_{one}"]))
+        way, force = series[f"travel_{tool}_{axis}"], series[f"force_{tool}_{axis}"]
+        ahead = 1.0 if abs(way.max()) > abs(way.min()) else -1.0
+        return texture(ahead * force, ahead * way)
 
     def warmed(self) -> None:
         """A heat step is over."""

@@ -12,7 +12,7 @@ from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import Problem, press
+from mpm.contact.solve import Problem, press, speed
 from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import weigh
 from mpm.integrate.explicit import clean, pass_body, update
@@ -43,6 +43,7 @@ class Touching(NamedTuple):
     spread: np.ndarray  # (B, K) area in touch times time since the last record [m2 s]
     deepest: np.ndarray  # (1,) largest overlap since the last record [m]
     worked: np.ndarray  # (1,) work of tools on bodies since the start [J]
+    rubbed: np.ndarray  # (1,) work that friction has taken since the start [J]
     number: np.ndarray  # (nodes,) scratch, -1
     room: np.ndarray  # (1,) contacts to make room for
 
@@ -121,7 +122,7 @@ def meet(method, bodies, touching, skin, grids, now, pace):
     at, coef = weigh(space, method.gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
     problem = Problem(contacts, at, coef, touching.fields, nodes, force, touching.tools, np.zeros((count, D)))
     press(space, problem, count, pace.ahead, pace.sound, touching.warm, touching.rows)
-    if keep_books(space, touching, skin, contacts, problem.impulse, pace.dt):
+    if keep_books(space, touching, skin, problem, pace.dt):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
             if wants_change(method.scheme):
@@ -129,10 +130,10 @@ def meet(method, bodies, touching, skin, grids, now, pace):
 
 
 @kernel
-def keep_books(space, touching, skin, contacts, impulse, dt):
+def keep_books(space, touching, skin, problem, dt):
     """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
-    D, B, pressed = directions(space), len(touching.first) - 1, False
-    way, moment, still = np.zeros(3), np.zeros(3), np.zeros(D)
+    D, B, pressed, contacts, impulse = directions(space), len(touching.first) - 1, False, problem.contacts, problem.impulse
+    way, moment, still, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(D)
     touching.warm[:] = 0.0
     for i in range(len(impulse)):
         s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
@@ -149,6 +150,10 @@ def keep_books(space, touching, skin, contacts, impulse, dt):
                 touching.pushed[b, BODY + a, c] -= impulse[i, c]
             if s >= 0:
                 touching.warm[s, row, c] = impulse[i, c]
+        if contacts.mu[i] > 0.0 and along > 0.0:
+            speed(problem, i, slip)
+            for c in range(D):
+                touching.rubbed[0] -= (impulse[i, c] - along * contacts.normal[i, c]) * slip[c]
         for c in range(3):
             touching.turned[a, to, c] += moment[c]
             if b >= 0:

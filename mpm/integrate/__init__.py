@@ -17,6 +17,7 @@ Further files
     deformation          F <- (1 + dt L) F: the total deformation gradient, carried only where surfaces or loads need it
     dither               what is added to a step in float32 before it is rounded on to positions, so that rounding favours no side
     fracture_surface     new surface where a body tears
+    given_source         the body force and the heat that a config gives
     fragments            gaps in a body
     grid_heating         elastic heating as the source document has it
     sorting              particles in the order of the nodes that they touch, where that pays

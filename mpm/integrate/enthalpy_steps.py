@@ -20,7 +20,7 @@ from mpm.heat.exchange import meet
 from mpm.integrate.enthalpy_nodes import closed, contents, guess, opened, settle, show, spread, wiped
 from mpm.integrate.heat_chebyshev import recurrence, stabilised_by_law
 from mpm.integrate.heat_implicit import GAMMA, conductances, implicit_by_law, load, wipe
-from mpm.integrate.heat_matrix import conjugate_gradients, matrix
+from mpm.integrate.heat_matrix import Rows, conjugate_gradients, matrix
 from mpm.integrate.heat_step import conduct, explicit_by_law
 from mpm.integrate.surface_flux import exchange, place, temperature_at
 from mpm.jit import kernel
@@ -81,7 +81,7 @@ def newton(space, x, alpha, flux, on, taken, total, dt, tolerance, scratch):
         if size <= tolerance * tolerance * moved or size == 0.0:
             return count
         rows[:, 0] = others + slope
-        done = conjugate_gradients(rows, columns, between, slope, -short, step, max(tolerance, INNER))
+        done = conjugate_gradients(Rows(rows), columns, between, slope, -short, step, max(tolerance, INNER))
         if done < 0:
             return -1
         count += max(done, 1)

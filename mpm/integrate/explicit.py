@@ -17,12 +17,12 @@ from mpm.boundary.walls import empty, fold, impose, unfold
 from mpm.integrate.active_nodes import reaches, touch
 from mpm.integrate.dither import dither
 from mpm.integrate.fbar import average_all, relax
+from mpm.integrate.given_source import act
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.particle_update import respond
 from mpm.integrate.state_check import sound
 from mpm.integrate.step_parts import Moment, scratch
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
-from mpm.integrate.traction import act
 from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store

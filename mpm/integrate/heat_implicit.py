@@ -16,7 +16,7 @@ from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.walls import clear, fold, unfold
 from mpm.heat.exchange import meet
 from mpm.heat.lanes import specify
-from mpm.integrate.heat_matrix import conjugate_gradients, matrix
+from mpm.integrate.heat_matrix import Rows, conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.surface_flux import load_piece, place, temperature_at
 from mpm.jit import kernel, role
@@ -179,7 +179,7 @@ def solve(space, x, flux, fields, dt, tolerance, walls, box, work):
         r[k], weight[k] = rate[each[k]], capacity[each[k]]
     wipe(rate, shape, box)
     rows, columns, between = matrix(space, shape, x, flow, pieces, met, capacity, each, dt, walls)
-    done = conjugate_gradients(rows, columns, between, weight, r, change, tolerance)
+    done = conjugate_gradients(Rows(rows), columns, between, weight, r, change, tolerance)
     for k in range(len(each)):
         theta[each[k]] = base[each[k]] + change[k]
     return done

@@ -10,6 +10,8 @@ in steps of 0.15 h^2 and 6 in steps of 1.5 h^2; beta = inf (a penalty of 1000 ka
 An iteration costs one product with the rows and two with the factor, and no passage over the particles.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mpm.basis import stencil
@@ -211,16 +213,44 @@ def product(rows, columns, x, y):
         y[r] += total
 
 
+class Rows(NamedTuple):
+    """C + dt A of one body."""
+
+    rows: np.ndarray  # (K, m)
+
+
+@role
+def times(operator, columns, x, y):
+    """y = operator x."""
+    raise TypeError(f"no product of {type(operator).__name__}")
+
+
+@times.register(Rows)
+def times_rows(operator, columns, x, y):
+    product(operator.rows, columns, x, y)
+
+
+@role
+def blocks(operator):
+    """Rows that the incomplete factor is made of."""
+    raise TypeError(f"no rows of {type(operator).__name__}")
+
+
+@blocks.register(Rows)
+def blocks_rows(operator):
+    return operator.rows
+
+
 @kernel
-def conjugate_gradients(rows, columns, between, weight, r, change, tolerance):
-    """change with (C + dt A) change = r, r spoilt; iterations, or -1.
+def conjugate_gradients(operator, columns, between, weight, r, change, tolerance):
+    """change with operator change = r, r spoilt; iterations, or -1. operator: Rows, or what registers `times` and `blocks`.
 
     Ends when the residual, as temperature (norm weighted with C = `weight`), is below `tolerance` of the change.
     """
-    K = len(r)
-    factor, z, p, q = np.empty_like(rows), np.empty(K), np.zeros(K), np.empty(K)
+    K, own = len(r), blocks(operator)
+    factor, z, p, q = np.empty_like(own), np.empty(K), np.zeros(K), np.empty(K)
     shift = 0.0
-    while not incomplete(rows, columns, between, shift, factor):
+    while not incomplete(own, columns, between, shift, factor):
         shift = max(2.0 * shift, SHIFT)
         if shift > 1e3:
             return -1
@@ -239,7 +269,7 @@ def conjugate_gradients(rows, columns, between, weight, r, change, tolerance):
         curve = 0.0
         for k in range(K):
             p[k] = z[k] + rho / before * p[k]
-        product(rows, columns, p, q)
+        times(operator, columns, p, q)
         for k in range(K):
             curve += p[k] * q[k]
         for k in range(K):

@@ -24,7 +24,7 @@ from mpm.integrate.active_nodes import SLACK, reaches, touch
 from mpm.integrate.dither import dither
 from mpm.integrate.explicit import clean, on_nodes, step_chunk
 from mpm.integrate.step_parts import Moment, scratch
-from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
+from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SOURCED, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
 from mpm.transfer import CHUNK, deliver, spread
@@ -161,7 +161,7 @@ def together(report: np.ndarray, found: np.ndarray) -> None:
     for place in (SPEED, RATE, SWELL):
         report[place] = found[:, place].max()
     report[STRAIN] = found[:, STRAIN].min()
-    for place in (HEATED, DISSIPATED, WORKED, SWELLED):
+    for place in (HEATED, DISSIPATED, WORKED, SWELLED, SOURCED):
         report[place] = sum(found[:, place].tolist())
 
 

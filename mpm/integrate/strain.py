@@ -8,7 +8,7 @@ from mpm.lanes import EIGHT, absolute, below, least, load8, maximum, most, peek,
 from mpm.outcome import INVERTED, OVERSTRETCHED
 from mpm.tensors import dilation2, dilation3, push2, push3
 
-CODE, PARTICLE, STEP, SPEED, RATE, STRAIN, SWELL, HEATED, DISSIPATED, WORKED, SWELLED, REPORT = range(12)  # places in the report
+CODE, PARTICLE, STEP, SPEED, RATE, STRAIN, SWELL, HEATED, DISSIPATED, WORKED, SWELLED, SOURCED, REPORT = range(13)  # places in the report
 MOST = 0.5  # largest entry of dt grad v
 GROW, JACOBIAN, HOOP = 9, 10, 11  # rows of Chunk.e: det(1 + A) - 1, J, rate of hoop strain. The trial B begins at row 0
 

@@ -157,9 +157,9 @@ class Surroundings:
             surface.radiation.emissivity[s] *= free
 
 
-def jumps(surroundings, end: float) -> np.ndarray:
-    """Times before `end` at which what surrounds any body jumps: heat steps end there."""
-    every = {when for one in surroundings if one is not None for when in one.turns}
+def jumps(surroundings, end: float, more: tuple = ()) -> np.ndarray:
+    """Times before `end` at which what surrounds any body jumps, and `more`: heat steps end there."""
+    every = {when for one in surroundings if one is not None for when in one.turns} | {*more}
     return np.array(sorted(when for when in every if 0 < when < end * (1 - 1e-9)))
 
 

@@ -15,6 +15,6 @@ From configs: mpm.scene.point; many at once: mpm.runner.run_points. To add a law
 """
 
 from mpm.point.run import solve
-from mpm.point.state import HELD, NOMINAL, STRESS, Lumped, Matter, Program
+from mpm.point.state import HELD, NOMINAL, STRESS, Lumped, Matter, Program, Sourced
 
-__all__ = ["HELD", "NOMINAL", "STRESS", "Lumped", "Matter", "Program", "solve"]
+__all__ = ["HELD", "NOMINAL", "STRESS", "Lumped", "Matter", "Program", "Sourced", "solve"]

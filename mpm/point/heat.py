@@ -1,6 +1,6 @@
 """Heat of a material point: its temperature less a zero, its enthalpy, and exchange as a lumped body.
 
-R0 alpha dTheta/dt = -conductance J^(2/3) (Theta - outside)     exact in any step for constant alpha
+R0 alpha dTheta/dt = -conductance J^(2/3) (Theta - outside) + rate     exact in any step for constant alpha and J
 """
 
 import math
@@ -8,7 +8,7 @@ import math
 from mpm.heat.local import rise
 from mpm.jit import role
 from mpm.materials import LAWS, Constant, enthalpy, value
-from mpm.point.state import Lumped
+from mpm.point.state import Lumped, Sourced
 from mpm.state import Isothermal, NoExchange, Thermal
 
 
@@ -125,6 +125,14 @@ def exchange_lumped(law, thermal, density, swell, dt):
     return heat
 
 
+@exchange.register(Sourced)
+def exchange_sourced(law, thermal, density, swell, dt):
+    if law.conductance == 0.0:
+        thermal.theta[0] += rise(thermal.alpha, thermal.zero + thermal.theta[0], dt * law.rate / density)
+        return dt * law.rate
+    return exchange(Lumped(law.conductance, law.outside + law.rate / (law.conductance * swell ** (2.0 / 3.0))), thermal, density, swell, dt)
+
+
 @role
 def time_constant(law, thermal, density):
     """R0 alpha/conductance of the lumped body [s]; inf without exchange."""
@@ -141,3 +149,8 @@ def time_constant_lumped(law, thermal, density):
     if law.conductance == 0.0 or law.conductance == math.inf:
         return math.inf
     return density * value(thermal.alpha, thermal.zero + thermal.theta[0]) / law.conductance
+
+
+@time_constant.register(Sourced)
+def time_constant_sourced(law, thermal, density):
+    return time_constant(Lumped(law.conductance, law.outside), thermal, density)

@@ -22,7 +22,7 @@ from mpm.materials import (
     Sets,
     Table,
 )
-from mpm.point.state import Lumped, NoConduction, Rigid
+from mpm.point.state import Lumped, NoConduction, Rigid, Sourced
 from mpm.state import Expansion, Heating, Isothermal, Latched, NoExchange, NoExpansion, NoHeating, NoSetting, Setting, Softening, Thermal
 
 
@@ -128,6 +128,11 @@ def pick_thermal(law, i):
 @pick.register(Lumped)
 def pick_lumped(law, i):
     return Lumped(law.conductance[i], law.outside[i])
+
+
+@pick.register(Sourced)
+def pick_sourced(law, i):
+    return Sourced(law.conductance[i], law.outside[i], law.rate[i])
 
 
 @pick.register(Expansion)

@@ -33,6 +33,14 @@ class Lumped(NamedTuple):
     outside: Any  # [K]
 
 
+class Sourced(NamedTuple):
+    """As Lumped, with heat from within."""
+
+    conductance: Any  # [W/(m3 K)]
+    outside: Any  # [K]
+    rate: Any  # [W/m3 of reference]
+
+
 class Matter(NamedTuple):
     """A batch of points: laws of arrays (mpm.point.pick), density, and the state that steps change."""
 
@@ -40,7 +48,7 @@ class Matter(NamedTuple):
     elastic: Any
     flow: Any
     thermal: Any  # mpm.state.Thermal or Isothermal
-    exchange: Any  # Lumped or mpm.state.NoExchange
+    exchange: Any  # Lumped, Sourced or mpm.state.NoExchange
     expansion: Any
     heating: Any
     elastic_strain: np.ndarray  # (N, 3) principal elastic Hencky strains [-]

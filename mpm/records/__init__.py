@@ -9,4 +9,5 @@ Further files
     batch    many small records in one sealed HDF5 file
     frames   the snapshots of one run in a file of their own, `<run id>.frames`, one after another as they are made
     large    datasets that are written piece by piece
+    patterns names of variables that hold other names
 """

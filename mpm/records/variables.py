@@ -3,17 +3,19 @@
 `VARIABLES`     dataset name -> Variable                       (`temperature_mean`)
 `OBSERVABLES`   what a config may list under `output.observables` (`temperature.mean`); dots become underscores in the dataset
 `describe`      a dataset name -> Variable, names with a probe in them too (`temperature_crust`, `time_to_centre_95_degC`)
-`Threshold`     `time_to.<probe>.<value>_<unit>` taken apart
+`Threshold`     `time_to.<probe>.<value>_<unit>` taken apart; `single`, `met`, `probed`: `position.max_y.<body>`, `force.<tool>_z`, `stress.<probe>_xx`
 `is_total`      whether a variable is a sum over the body; `turn`, `PER` and `describe` say of what body, and nothing else does: the whole body in 3-D and
                 axisymmetric scenes, a metre of its depth in plane ones, a square metre in 1-D, a cubic metre of the material in dimension 0
 
-Imports nothing of the package and nothing heavy. To add a quantity: one line in TABLE.
+Imports nothing of the package but the patterns beside it, and nothing heavy. To add a quantity: one line in TABLE.
 """
 
 import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+
+from mpm.records.patterns import AT_PROBE, BITES, IN_DATASET, MEETING, MET, PROBED, SINGLE, THRESHOLD
 
 POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
 STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
@@ -56,7 +58,7 @@ TABLE = [
     ("temperature.min", "θ", "K", SERIES, "lowest temperature"),
     ("temperature.max", "θ", "K", SERIES, "highest temperature"),
     ("heat.total", "H", "J", SERIES, "heat content above the reference temperature"),
-    ("heat.exchanged", "Q", "J", SERIES, "heat taken in through surfaces since the start"),
+    ("heat.exchanged", "Q", "J", SERIES, "heat taken in through surfaces and given by sources since the start"),
     ("heat.ledger", "", "J", SERIES, "heat content gained less heat taken in: what the method lost"),
     ("mass.total", "m", "kg", SERIES, "total mass"),
     ("energy.kinetic", "", "J", SERIES, "kinetic energy"),
@@ -64,14 +66,14 @@ TABLE = [
     ("energy.total", "", "J", SERIES, "kinetic, elastic and gravitational energy"),
     ("energy.ledger", "", "J", SERIES, "energy and heat gained or dissipated, less work of loads and heat taken in: what the method made"),
     ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
+    ("dissipation.friction", "", "J", SERIES, "work that friction between surfaces has taken since the start; it warms nothing"),
     ("dissipation.transfer", "", "J", SERIES, "energy of motion that no law of the config took: lost in transfers, at walls and by the time step"),
     ("work.loads", "", "J", SERIES, "work of loads and tools on the bodies since the start"),
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
     ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
     ("radius.max", "r", "m", SERIES, "largest radius of the material"),
-    ("radius.95", "r95", "m", SERIES, "radius that holds 95 % of the volume"),
-    ("radius.99", "r99", "m", SERIES, "radius that holds 99 % of the volume"),
+    *((f"radius.{share}", f"r{share}", "m", SERIES, f"radius that holds {share} % of the volume") for share in (95, 99)),
     ("J.min", "J", "1", SERIES, "smallest volume ratio det F"),
     ("J.max", "J", "1", SERIES, "largest volume ratio det F"),
     ("pressure.mean", "p", "Pa", SERIES, "mean pressure, weighted with volume"),
@@ -158,27 +160,15 @@ TABLE = [
     *((f"extent.{a}", "", "m", SERIES, f"extent of the material along {a}") for a in AXES),
 ]
 
-MET = {  # what a wall, a tool or another body does: <what>.<of>, with a direction behind it for forces and torques
-    "force": ("N", "mean force since the record before, on bodies by {}"),
-    "torque": ("N m", "mean torque since the record before, on bodies by {}, about the tool's centre or the origin of coordinates"),
-    "area": ("m2", "mean area in touch since the record before, with {}"),
-    "heat": ("J", "heat taken in by the first body from the second since the start, {}"),
-}
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
-NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "work.loads", "velocity.max",
-                  "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
+NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "dissipation.friction", "work.loads",
+                  "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
 FIELDS_GRID = ("temperature", "velocity", "density", "stress")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body",
                     "stress", "stress_recovered", "strain", "displacement", "reference_position", "velocity_gradient", "id",
                     "setting")  # fmt: skip
 TENSORS = ("stress", "stress_recovered", "strain", "velocity_gradient")  # fields of particles with a column a component
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
-
-_THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")
-_IN_DATASET = r"time_to_(?P<probe>{})_(?P<value>-?\d+(?:_\d+)?)_(?P<unit>degC|K)"
-_PROBED = re.compile(r"(?P<field>displacement|stress)[._](?P<probe>[A-Za-z_]\w*)_(?P<part>[xyzr]|[xyzrt]{2})")
-_MET = re.compile(r"(?:(?P<turned>force|torque)[._](?P<on>[A-Za-z_]\w*)_(?P<axis>[xyzr])|(?P<what>area|heat)[._](?P<of>[A-Za-z_]\w*))")
-_AT_PROBE = ("temperature", "velocity")
 
 
 def components(name: str, dimension: int | str | None) -> str:
@@ -195,13 +185,21 @@ def dataset_name(observable: str) -> str:
 
 
 VARIABLES = {dataset_name(row[0]): Variable(dataset_name(row[0]), *row[1:]) for row in TABLE}
+_SINGLE = sorted((dataset_name(name) for name in OBSERVABLES if dataset_name(name).startswith(SINGLE)), key=len, reverse=True)
+
+
+def single(name: str) -> tuple[str, str] | None:
+    """(observable, body) of `position.max_y.ball`, or of its name in a dataset; the observable as in a dataset. None for any other name."""
+    told = dataset_name(name)
+    base = next((base for base in _SINGLE if told.startswith(f"{base}_")), None) if told not in VARIABLES else None
+    return (base, told[len(base) + 1 :]) if base is not None and ("." not in name or name[len(base)] == ".") else None
 
 
 def threshold(name: str, probes: Iterable[str] = ()) -> Threshold | None:
     """Take `time_to.centre.95_degC` (or its dataset name) apart; None for any other name. In a dataset's name only `probes` tell tc_1 at 5 from tc at 1.5."""
-    match = _THRESHOLD.fullmatch(name)
+    match = THRESHOLD.fullmatch(name)
     for probe in () if match else (*probes, r"[A-Za-z_]\w*?"):
-        if match := re.fullmatch(_IN_DATASET.format(probe), name):
+        if match := re.fullmatch(IN_DATASET.format(probe), name):
             break
     if match is None:
         return None
@@ -211,13 +209,13 @@ def threshold(name: str, probes: Iterable[str] = ()) -> Threshold | None:
 
 def probed(name: str) -> tuple[str, str, str] | None:
     """(field, probe, part) of `displacement.tip_y` or `stress.root_xx`, or of their names in a dataset; None for any other name."""
-    match = _PROBED.fullmatch(name)
+    match = PROBED.fullmatch(name)
     return (match["field"], match["probe"], match["part"]) if match and (match["field"] == "stress") == (len(match["part"]) == 2) else None
 
 
 def met(name: str) -> tuple[str, str, str] | None:
     """(what, wall or tool or pair, direction or nothing) of `force.bottom_z`, `area.press`, `heat.a_b`, or of their names in a dataset; None for any other."""
-    match = _MET.fullmatch(name) if dataset_name(name) not in VARIABLES else None
+    match = MEETING.fullmatch(name) if dataset_name(name) not in VARIABLES else None
     return match and (match["turned"] or match["what"], match["on"] or match["of"], match["axis"] or "")
 
 
@@ -228,12 +226,13 @@ def parts(field: str, dimension: int | str | None) -> list[str]:
 
 def observable_exists(name: str) -> bool:
     """Whether a config may list `name`. Whether its probe exists is for the config to say."""
-    return name in OBSERVABLES or any(found(name) is not None for found in (threshold, probed, met))
+    return name in OBSERVABLES or any(found(name) is not None for found in (threshold, probed, met, single))
 
 
 def is_total(name: str) -> bool:
     """Whether a dataset name is a sum over the body."""
-    return VARIABLES[name].units in TOTALS if name in VARIABLES else met(name) is not None
+    name = found[0] if (found := single(name)) else name
+    return VARIABLES[name].units in TOTALS if name in VARIABLES else (one := met(name)) is not None and MET[one[0]][0] in TOTALS
 
 
 def turn(dimension: int | str | None) -> float:
@@ -252,9 +251,12 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
     `probes` as in `threshold`.
     """
     whole = VARIABLES.get(name)
-    if whole is None and (found := met(name)):
+    if whole is None and (found := single(name)) and name.partition("_")[2] not in probes:
+        whole = replace(VARIABLES[found[0]], name=name, long_name=f"{VARIABLES[found[0]].long_name}, of {found[1].replace('_', ' ')}")
+    elif whole is None and (found := met(name)):
         what, of, axis = found
-        whole = Variable(name, "", MET[what][0], SERIES, MET[what][1].format(of.replace("_", " ")) + (f", along {axis}" if axis else ""))
+        said = MET[what][1].format(of.replace("_", " ")) + (f", along {axis}" if axis else "")
+        whole = Variable(name, "", MET[what][0], POINT if what in BITES else SERIES, said)
     if is_total(name) and dimension in PER:
         units, of = PER[dimension]
         return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {of}")
@@ -273,7 +275,7 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
         return Variable(name, "", "K", POINT, f"root-mean-square difference from the temperature measured at {probe.replace('_', ' ')}")
     if field == "measured" and probe:
         return replace(of := describe(probe, dimension, probes), name=name, long_name=f"measured {of.long_name}")
-    if field in _AT_PROBE and probe:
+    if field in AT_PROBE and probe:
         return replace(VARIABLES[field], name=name, dims=SERIES, long_name=f"{field} at {probe.replace('_', ' ')}")
     raise KeyError(name)
 
@@ -282,6 +284,8 @@ def fits(observable: str, dimension: int | str) -> bool:
     """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
     if found := probed(observable):
         return found[2] in parts(found[0], dimension)
+    if found := single(observable):
+        return dimension != 0 and fits(next(name for name in OBSERVABLES if dataset_name(name) == found[0]), dimension)
     if found := met(observable):
         if dimension == 0 or (found[0] == "torque" and dimension not in (2, 3)):
             return False

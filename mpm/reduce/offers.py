@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm.config.boundary import EXCHANGES
-from mpm.records.variables import is_total
+from mpm.records.variables import is_total, single
 from mpm.scene.scales import Scales, scales, span
 
 HEAT = ("temperature", "heat", "time_to")
@@ -101,6 +101,10 @@ def refused(experiment: Any, want: Asked) -> str:
         return "the run is compared with an exact solution of the full model"
     if experiment.grid.dimension == 0:
         return "a material point is the smallest model there is"
+    if any(single(name) is not None for name in experiment.output.observables):
+        return "observables of one body are asked for, under names that a smaller model has not"
+    if experiment.sources:
+        return "sources act within the bodies, which no estimate of a smaller model knows"
     return "fields are asked for" if want.fields else ""
 
 

@@ -168,6 +168,7 @@ def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: flo
     steady = spread([p.programmes.steady + (p.zero - zero) * (p.facing - sum(v for _, v in p.programmes.forcing)) for p in parts])
     forcing, given = (tuple((programme, spread([v if q is p else np.zeros(len(q.facing)) for q in parts])) for p in parts
                             for programme, v in getattr(p.programmes, name)) for name in ("forcing", "given"))  # fmt: skip
+    within = tuple(one._replace(index=i[one.index], size=size) for p, i in zip(parts, into, strict=True) for one in p.programmes.within)
     skies, radiants = (), []
     for p, i in zip(parts, into, strict=True):
         radiants.append(p.radiant._replace(index=i[p.radiant.index], sky=p.radiant.sky + len(skies)))
@@ -181,7 +182,8 @@ def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: flo
     start, density = (spread([np.where(p.geometry.active, getattr(p, name), 0.0) for p in parts]) for name in ("start", "density"))
     return Group(
         geometry=shaped, density=1.0, kappa=Constant(1.0), alpha=Constant(1.0), start=start, field=None, zero=zero, exchange=joined, facing=facing,
-        programmes=Programmes(steady, forcing, given, skies, zero), radiant=radiant, hot=whole(hot) if any(len(p.hot) for p in parts) else np.zeros((0, 0)),
+        programmes=Programmes(steady, forcing, given, skies, zero, within),
+        radiant=radiant, hot=whole(hot) if any(len(p.hot) for p in parts) else np.zeros((0, 0)),
         span=max(hottest - coldest, 1e-6 * max(abs(hottest), abs(coldest)), 1e-30), coldest=coldest, hottest=hottest, stiff=max(p.stiff for p in parts),
         bounds=(min(p.bounds[0] for p in parts), max(p.bounds[1] for p in parts)), parts=parts, into=into, owner=owner, leaving=leaving, joints=tuple(linked),
         density_of=density, blunt=not all(fixed),

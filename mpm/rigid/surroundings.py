@@ -1,6 +1,6 @@
 """What surrounds a rigid body at a time: convection and flux as a supply, radiation at the surface's quadrature points.
 
-supply(t) = sum beta (outside(t) - zero) int N + sum q int N        radiation: -sum_q w sigma e (T_q^4 - sky(t)^4) N(x_q)
+supply(t) = sum beta (outside(t) - zero) int N + sum q int N + int q(x, t) N        radiation: -sum_q w sigma e (T_q^4 - sky(t)^4) N(x_q)
 Temperatures over time are mpm.heat.programmes; between the ends of an explicit step they are taken as linear, at the stages of an implicit one as they are.
 """
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm.heat.programmes import at, longest
 from mpm.jit import kernel
+from mpm.sources import Code, values
 
 
 class Around(NamedTuple):
@@ -30,23 +31,42 @@ class Radiant(NamedTuple):
     zero: float  # [K]
 
 
+class Within(NamedTuple):
+    """Heat from within by a formula: int q(x, t) N over the body's quadrature points. No temperature is known to it."""
+
+    code: Code  # [W/m3]
+    x: np.ndarray  # (Q, d) points
+    w: np.ndarray  # (Q,) weights
+    index: np.ndarray  # (Q, m) nodes of a point
+    spline: np.ndarray  # (Q, m)
+    size: int  # of the supply
+    longest: float  # of a step [s]
+
+    def at(self, t: float) -> np.ndarray:
+        """(N,) [W]"""
+        each = (self.w * values(self.code, self.x, t))[:, None] * self.spline
+        return np.bincount(self.index.ravel(), weights=each.ravel(), minlength=self.size)
+
+
 class Programmes(NamedTuple):
     """Around at any time: what is constant, and what follows a programme."""
 
     steady: np.ndarray  # (N,) supply that never changes [W]
     forcing: tuple[tuple[Any, np.ndarray], ...]  # (programme, beta int N)
-    given: tuple[tuple[Any, np.ndarray], ...]  # (programme of a flux, int N)
+    given: tuple[tuple[Any, np.ndarray], ...]  # (programme of a flux, int N over the surface; or of heat from within, int N)
     skies: tuple[Any, ...]
     zero: float
+    within: tuple[Within, ...] = ()
 
     @property
     def changes(self) -> bool:
-        return bool(self.forcing or self.given) or not all(isinstance(sky, float) for sky in self.skies)
+        return bool(self.forcing or self.given or self.within) or not all(isinstance(sky, float) for sky in self.skies)
 
     @property
     def longest(self) -> float:
         """No step may be longer, or it would miss what changes [s]."""
-        return min((longest(p) for p in (*(p for p, _ in (*self.forcing, *self.given)), *self.skies)), default=np.inf)
+        every = [longest(p) for p in (*(p for p, _ in (*self.forcing, *self.given)), *self.skies)]
+        return min([*every, *(one.longest for one in self.within)], default=np.inf)
 
     def around(self, t: float) -> Around:
         supply = self.steady
@@ -54,6 +74,8 @@ class Programmes(NamedTuple):
             supply = supply + (at(programme, t) - self.zero) * facing
         for programme, area in self.given:
             supply = supply + at(programme, t) * area
+        for one in self.within:
+            supply = supply + one.at(t)
         return Around(supply, float(supply.sum()), np.array([at(sky, t) for sky in self.skies], dtype=float))
 
 

@@ -12,14 +12,16 @@ from typing import Any
 import numpy as np
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN
-from mpm.heat.programmes import at, bounds, during, turns
+from mpm.heat.programmes import SAME, at, bounds, during, turns
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
 from mpm.rigid.geometry import Geometry, evaluated, geometry
 from mpm.rigid.hats import hat_geometry, over_depth
-from mpm.rigid.surroundings import Programmes, Radiant
+from mpm.rigid.surroundings import Programmes, Radiant, Within
+from mpm.sources import Code, values
 
 PENALTY = 1e5
+LOOKS = 100  # times a run at which a formula over time is looked at, at least
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class RigidBody:
 
     fluxes: (side, q into the body [W/m2]); radiation: (side, emissivity, surroundings [K]). All are numbers or mpm.heat.programmes, but that beta and
     emissivity do not change between jumps.
+    sources: heat from within, (what, factor, begin, end [s]) each: factor [W/m3] times a number, a programme or a mpm.sources.Code.
     field: temperatures at the start at points (P, d) -> (P,), where they are not the same everywhere.
 
     shape: mpm.scene.shapes; temperature [K] at the start; density [kg/m3]; kappa [W/(m K)], alpha [J/(kg K)]: numbers or mpm.materials.laws.
@@ -41,12 +44,14 @@ class RigidBody:
     surfaces: tuple[tuple[str, Any, Any], ...] = ()
     fluxes: tuple[tuple[str, Any], ...] = ()
     radiation: tuple[tuple[str, Any, Any], ...] = ()
+    sources: tuple[tuple[Any, float, float, float], ...] = ()
     field: Any = None
 
     @property
     def turns(self) -> set[float]:
         """Times at which something jumps [s]."""
-        return {when for entry in (*self.surfaces, *self.fluxes, *self.radiation) for one in entry[1:] for when in turns(one)}
+        around = {when for entry in (*self.surfaces, *self.fluxes, *self.radiation) for one in entry[1:] for when in turns(one)}
+        return around | {when for one, _, begin, end in self.sources for when in (begin, end, *turns(one))}
 
 
 @dataclass(frozen=True)
@@ -120,15 +125,49 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
             rise = abs(extreme) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
             steep = abs(extreme) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
             data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if extreme > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
+    through = 0.0 if any(turns(beta) for _, beta, _ in body.surfaces) else float(facing.sum())
+    heated, grown, sunk = sources_of(body, shaped, conductivity, through, min(value(alpha, t) for t in data), end, moment)
+    steady, given, data = steady + heated.steady, [*given, *heated.given], [*data, max(data) + grown, max(min(data) - sunk, 0.5 * min(data))]
+    between = -math.inf if sunk > 0 else between[0], math.inf if grown > 0 else between[1]
     radiant, hot = radiating(body, shaped, zero, n + len(body.fluxes), max(data), moment)
     span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
     skies = tuple(float(sky) if isinstance(sky, int | float) else sky for sky in (during(sky, moment) for _, _, sky in body.radiation))
-    programmes = Programmes(steady, tuple(forcing), tuple(given), skies, zero)
+    programmes = Programmes(steady, tuple(forcing), tuple(given), skies, zero, heated.within)
     return System(
         shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
         max(data), stiff, between,
     )  # fmt: skip
+
+
+def sources_of(
+    body: RigidBody, shaped: Geometry, conductivity: float, through: float, alpha: float, end: float, moment: float
+) -> tuple[Programmes, float, float]:
+    """(heat from within: steady, given, within; at most how much warmer and colder it makes the body [K], of which `through` [W/K] loses it)."""
+    steady, given, within, least, greatest = np.zeros(shaped.nodes.size), [], [], 0.0, 0.0
+    nodes = evaluated(shaped.nodes, shaped.x) if any(isinstance(one, Code) for one, *_ in body.sources) else ()
+    for one, factor, begin, stop in body.sources:
+        acts = begin <= moment * (1 + SAME) and moment < stop * (1 - SAME)
+        if isinstance(one, Code):
+            found = Within(one, shaped.x, factor * shaped.w, *nodes, shaped.nodes.size, math.inf if one.lasting else end / LOOKS)
+            ends = [factor * values(one, shaped.x, t) for t in ((0.0,) if one.lasting else np.linspace(max(begin, 0.0), min(stop, end), LOOKS))]
+            least, greatest = least + min(0.0, *map(np.min, ends)), greatest + max(0.0, *map(np.max, ends))
+            if acts and one.lasting:
+                steady += found.at(0.0)
+            elif acts:
+                within.append(found)
+            continue
+        low, high = (factor * bound for bound in bounds(one))
+        least, greatest = least + min(low, 0.0), greatest + max(high, 0.0)
+        now = during(one, moment)
+        if isinstance(now, int | float):
+            steady += now * factor * shaped.volume
+        else:
+            given.append((now, factor * shaped.volume))
+    depth, whole = float(np.ptp(shaped.x, axis=0).max()), float(shaped.volume.sum())
+    level = depth**2 / max(conductivity, 1e-300) + whole / through if through > 0 else math.inf
+    warmer, colder = (min(size * min(end / (body.density * alpha), level), 1e4) if size > 0 else 0.0 for size in (greatest, -least))
+    return Programmes(steady, (), tuple(given), (), 0.0, tuple(within)), warmer, colder
 
 
 def radiating(body: RigidBody, shaped: Geometry, zero: float, first: int, hottest: float, moment: float) -> tuple[Radiant, np.ndarray]:

@@ -23,6 +23,7 @@ Further files
     rigid              A rigid scene from a validated experiment, and its Run
     scales             the scales of a scene's bodies, from the config alone
     scaling            slow scenes on a fast clock
+    sources            sources of a config
     sphere             exact quadrature of a ball cut by a three-dimensional grid
     still              bodies that do not move
     tools              tools of a config

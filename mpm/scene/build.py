@@ -25,6 +25,7 @@ from mpm.scene.outline import outline_near, outline_of
 from mpm.scene.refusal import SceneError
 from mpm.scene.scaling import hurried
 from mpm.scene.shapes import cells, shape
+from mpm.scene.sources import moments, sourced
 from mpm.scene.tools import drive
 from mpm.scene.total import total_bodies, wall_kinds
 from mpm.scene.traction import loaded
@@ -124,7 +125,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
         fraction = material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
-    source = loaded(experiment, name, faces, space, gradient_operator(experiment))
+    source = sourced(experiment, name, loaded(experiment, name, faces, space, gradient_operator(experiment)), particles, thermal)
     setting = setting_law(material, np.full(N, config.temperature))
     body = Body(particles, thermal, surface, elastic, flow, expansion, heating, source, setting=setting)
     return body, surroundings, seams, outline
@@ -215,6 +216,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
+        turns=moments(experiment),
         implicit=implicit(experiment, space, bodies, met, times),
         watch=watch(experiment, exact),
     )
@@ -233,7 +235,7 @@ def begin(bodies, exact, zero: float, h: float) -> None:
 
 def watch(experiment, exact=None) -> Watch:
     """What the config asks to record."""
-    from mpm.records.variables import dataset_name, probed, threshold
+    from mpm.records.variables import BITES, dataset_name, met, probed, single, threshold
 
     shift = np.array(experiment.method.offset) * experiment.grid.cell
     found = [(dataset_name(name), threshold(name)) for name in experiment.output.observables if threshold(name) is not None]
@@ -242,6 +244,8 @@ def watch(experiment, exact=None) -> Watch:
         probes={name: np.array(x) + shift for name, x in experiment.output.probes.items()},
         homes={name: home(experiment.bodies, x, experiment.grid.size) for name, x in experiment.output.probes.items()},
         asked={dataset_name(name): one for name in experiment.output.observables if (one := probed(name)) is not None},
+        of={dataset_name(name): (one[0], list(experiment.bodies).index(one[1])) for name in experiment.output.observables if (one := single(name)) is not None},
+        bites={dataset_name(name): one[:2] for name in experiment.output.observables if (one := met(name)) is not None and one[0] in BITES},
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
         snapshots=output_times(experiment, snapshots.every) if snapshots else np.zeros(0),
         grid=snapshots.grid if snapshots else (),

@@ -6,6 +6,7 @@ from itertools import combinations
 from mpm.config.boundary import EXCHANGES
 from mpm.config.laws import sets
 from mpm.config.loads import LOADS
+from mpm.config.sources import KINDS as SOURCES
 
 MANY = 10  # pairs of bodies that are told one by one
 
@@ -25,11 +26,19 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {f"exchange: {kind}" for kind in EXCHANGES for entry in experiment.surfaces if getattr(entry, kind) is not None}
     present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
     present |= {f"load: {kind}" for kind in LOADS for entry in experiment.loads if getattr(entry, kind) is not None}
+    present |= {f"source: {kind}" for kind in SOURCES for entry in experiment.sources if getattr(entry, kind) is not None}
     present |= {"gravity"} if experiment.gravity is not None else set()
-    present |= set(pairs(experiment))
+    present |= set(pairs(experiment)) | {f"tool: {name}, {told(tool)}" for name, tool in experiment.tools.items()}
     said = {text.split(":")[0] for text in present}
-    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "load", "gravity")
+    parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "source", "load", "gravity")
     return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
+
+
+def told(tool) -> str:
+    """How a tool moves."""
+    motion = tool.motion
+    ways = [key for key in ("velocity", "path", "force", "spin") if getattr(motion, key) is not None]
+    return f"{tool.shape.kind}, {'moves by ' + ' and '.join(ways) if ways else 'stands'}{', exchanges heat' if tool.heat is not None else ''}"
 
 
 def pairs(experiment) -> list[str]:

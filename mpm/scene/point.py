@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, solve
+from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, Sourced, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
 from mpm.scene.build import output_times
@@ -13,6 +13,7 @@ from mpm.scene.inventory import output_bytes, physics
 from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import acting
 from mpm.scene.refusal import SceneError
+from mpm.scene.sources import heats
 from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
 
 AXES = ("xx", "yy", "zz")
@@ -170,13 +171,15 @@ def laws(experiment) -> Matter:
 def lumped(experiment, name: str, body):
     """All exchanges of the point as one."""
     pairs = [pair for surface in experiment.surfaces if surface.of == name for pair in exchanges(surface) if pair[0] > 0]
+    rate = sum(one * factor for one, factor, *_ in heats(experiment, name))
     if not pairs:
-        return NoExchange()
+        return Sourced(0.0, body.temperature, rate) if rate else NoExchange()
     total = sum(beta for beta, _ in pairs)
     if math.isinf(total) and len(pairs) > 1:
         raise SceneError(("surfaces",), "a fixed temperature, or beta = inf, must be the only exchange of a material point")
     outside = pairs[0][1] if len(pairs) == 1 else sum(beta * out for beta, out in pairs) / total
-    return Lumped(total * body.shape.surface_to_volume, outside)
+    found = Lumped(total * body.shape.surface_to_volume, outside)
+    return Sourced(*found, rate) if rate else found
 
 
 def exchanges(surface) -> list[tuple[float, float]]:

@@ -11,6 +11,7 @@ from mpm.scene.build import SceneError, output_times, watch
 from mpm.scene.exchange import most, must_conduct, rates, robin
 from mpm.scene.law import law
 from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.sources import resting
 from mpm.scene.still import joints, refuse_covered
 from mpm.state import Run
 from mpm.warned import warning
@@ -41,7 +42,9 @@ def rigid_bodies(experiment, field=None) -> list:
         kappa, alpha = law(material.heat.kappa), law(material.heat.alpha)
         around = [outside for _, rate, outside in (*surfaces, *radiation) if most(rate) > 0]
         must_conduct(name, any(value(kappa, t) > 0 for t in (body.temperature, *(t for one in around for t in bounds(one)))), bool(around))
-        bodies.append(RigidBody(outline, body.temperature, material.density, kappa, alpha, surfaces, fluxes, radiation, field))
+        bodies.append(
+            RigidBody(outline, body.temperature, material.density, kappa, alpha, surfaces, fluxes, radiation, resting(experiment, name, outline), field)
+        )
     return bodies
 
 
@@ -85,7 +88,9 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots, shift, len(solved.times))
-    series |= {name: np.full(len(solved.times), total) for name, total in matter(experiment).items()}
+    masses = matter(experiment)
+    asked = {dataset_name(name) for name in experiment.output.observables} & {"mass_total", "volume_total"}
+    series |= {name: np.full(len(solved.times), sum(one[name] for one in masses)) for name in sorted(asked)} | of_bodies(experiment, solved, masses)
     finals = {name: float(values[-1]) for name, values in series.items()}
     finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
     finals["steps"] = float(solved.steps)
@@ -101,17 +106,28 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     return run
 
 
-def matter(experiment) -> dict[str, float]:
-    """Mass and volume of all bodies, where asked for: exact, from their outlines; per radian in an axisymmetric scene, as all that the solver sums."""
-    asked = {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"}
-    totals, grid = dict.fromkeys(sorted(asked), 0.0), experiment.grid
+def matter(experiment) -> list[dict[str, float]]:
+    """Mass and volume of each body, where asked for: exact, from their outlines; per radian in an axisymmetric scene, as all that the solver sums."""
+    asked, grid, found = {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"}, experiment.grid, []
     edges = [np.arange(round(size / grid.cell) + 1) * grid.cell for size in grid.size]
     for body in experiment.bodies.values() if asked else ():
         points, _ = cut_quadrature(shape(body.shape, grid.dimension), edges, 2)
         volume = float(np.sum(points.w * (points.x[:, 0] if grid.dimension == "axisymmetric" else 1.0)))
-        for name in totals:
-            totals[name] += volume * (experiment.materials[body.material].density if name == "mass" else 1.0)
-    return {f"{name}_total": total for name, total in totals.items()}
+        found.append({"mass_total": volume * experiment.materials[body.material].density, "volume_total": volume})
+    return found
+
+
+def of_bodies(experiment, solved, masses) -> dict[str, np.ndarray]:
+    """Series of one body that are asked for, and the heat that the first body of each pair has taken from the second."""
+    from mpm.records.variables import dataset_name, single
+
+    names, count, found = list(experiment.bodies), len(solved.times), {}
+    for told in experiment.output.observables:
+        if (one := single(told)) is not None:
+            b, own = names.index(one[1]), {"heat_total": "heat"}.get(one[0], one[0].replace("_", ".", 1))
+            constant = masses[b].get(one[0], np.nan) if masses else np.nan
+            found[dataset_name(told)] = solved.of[b].get(own, np.full(count, constant))
+    return found | {f"heat_{names[a]}_{names[b]}": -flow for (a, b), flow in solved.passed.items()}
 
 
 class Looks:

@@ -112,6 +112,7 @@ def hurried(experiment):
             "bodies": {name: changed(body, S, "velocity", "angular_velocity") for name, body in experiment.bodies.items()},
             "materials": {name: material(one, S) for name, one in experiment.materials.items()},
             "surfaces": tuple(surface(one, S) for one in experiment.surfaces),
+            "contacts": tuple(changed(pair, S, "conductance") for pair in experiment.contacts),
             "loads": tuple(load(one, S) for one in experiment.loads),
             "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S, "beta", "temperature")}) for side, wall in experiment.walls.items()},
             "time": changed(experiment.time, 1 / S, "end", "step").model_copy(update={"scale": 1.0}),

@@ -16,8 +16,9 @@ from mpm.scene.menus import pulling
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
+from mpm.scene.sources import sourced
 from mpm.scene.traction import one_ramp
-from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Particles, Surface, Thermal
+from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Surface, Thermal
 from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, new_nodes
 from mpm.total.step import courant_of
@@ -82,7 +83,7 @@ def total_body(experiment, name: str, zero: float, space):
         gamma = expansion.gamma if material.heating.elastic is not None else 0.0
         heating = Heating(gamma, material.heating.dissipation.fraction if material.heating.dissipation is not None else 0.0)
     setting = setting_law(material, np.full(len(x), config.temperature))
-    body = Body(particles, thermal, skin, elastic, flow, expansion, heating, setting=setting)
+    body = Body(particles, thermal, skin, elastic, flow, expansion, heating, sourced(experiment, name, NoSource(), particles, thermal), setting=setting)
     return body, reference_of(experiment, name, space, body, surface, lower, upper), around
 
 

@@ -1,6 +1,6 @@
 """What acts on a body in the total frame beside its stress, and what averages its changes of volume: roles by the body's own objects.
 
-push     a source (mpm.sources): force m b(X, t) on w, heat r(X, t) to the particle                                    NoSource: nothing
+push     a source (mpm.sources, or what the config gives): force m b(X, t) on w, heat r(X, t) to the particle           NoSource: nothing
 average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jiang & Choo 2022) on the weights of the reference shape:
          J_i = sum w V0 J_p/sum w V0,  J- = sum w J_i,  with J- + own (J - J-) for J-:   stress of F- = (J-/J)^(1/D) F,  P = tau(F-) F^-T
          In plane strain and axisymmetry the directions of the grid are scaled, the third is not.                        NoAverage: nothing
@@ -9,9 +9,10 @@ average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jian
 import math
 
 from mpm.integrate.body_force import take_up
+from mpm.integrate.given_source import push_at, warm
 from mpm.integrate.strain import HEATED
 from mpm.jit import role
-from mpm.sources import heat, push
+from mpm.sources import Given, heat, push
 from mpm.state import Average, Axisymmetric, Line, NoAverage, NoSource, Plane, Source, Volume
 from mpm.tensors import dilation1, dilation2, dilation3
 from mpm.transfer import CHUNK, Bspline, gather, gather_scalar, lay_down, scatter_scalar
@@ -38,6 +39,18 @@ def act_on_source(source, body, chunk, first, count, dt, report):
             source.t[i] += dt
         for c in range(particles.v.shape[1]):
             chunk.a[c, p] += particles.m[i] * push(source.law, source.X, i, c, source.t[i])
+
+
+@act_on.register(Given)
+def act_on_given(source, body, chunk, first, count, dt, report):
+    m = body.particles.m
+    warm(source.heat, source, body, first, count, dt, report)
+    for p in range(count):
+        source.t[first + p] += dt
+    push_at(source.force, source, body, first, count, source.t[first])
+    for p in range(count):
+        for c in range(source.X.shape[1]):
+            chunk.a[c, p] += m[first + p] * source.b[first + p, c]
 
 
 @role

@@ -20,6 +20,7 @@ from mpm.heat.exchange import meet
 from mpm.integrate.stress_hencky import warms
 from mpm.jit import kernel
 from mpm.materials.laws import value
+from mpm.sources import Given
 from mpm.total.reference import gradients_at
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
@@ -54,7 +55,7 @@ def warm(space, body, reference, dt: float, tolerance: float) -> tuple[float, in
     K = np.ascontiguousarray(V[:, None, None] * (inverse @ inverse.transpose(0, 2, 1)))
     present_areas(space, reference)
     X = reference.X.astype(float)
-    if warms(body.heating):
+    if warms(body.heating) or isinstance(body.source, Given):
         take_up(space, X, particles.m.astype(float), body.thermal, warmth)
     gained, count = conduct(space, body.surface, body.thermal, X, K, warmth, dt, tolerance)
     slope = np.empty((len(X), D))

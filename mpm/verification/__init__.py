@@ -8,8 +8,10 @@ Further files
     adiabatic            adiabatic compression of a thermoelastic point
     cantilever           a cantilever at rest under its own weight, by finite elements
     cooks_membrane       Cook's membrane
+    formulas             A manufactured problem that the config poses
     free_fall            flight under gravity
     gaussian_box         A Gaussian that spreads in an insulated box, by images
+    heated_slab          A slab heated evenly from within that cools through one face or both
     hencky_bar           A bar of Hencky material in uniaxial strain that starts straight in its first mode
     hydrostatic_column   A column of Hencky material under its own weight, in uniaxial strain and at rest
     layers               layers in contact, slabs or coaxial cylinders
@@ -40,8 +42,10 @@ from mpm.verification import (
     adiabatic,
     cantilever,
     cooks_membrane,
+    formulas,
     free_fall,
     gaussian_box,
+    heated_slab,
     hencky_bar,
     hydrostatic_column,
     layers,
@@ -85,6 +89,8 @@ EXACT = {
     "gaussian_box": gaussian_box.exact,
     "stefan": stefan.exact,
     "layers": layers.exact,
+    "heated_slab": heated_slab.exact,
+    "formulas": formulas.exact,
     "cooks_membrane": cooks_membrane.exact,
     "cantilever": cantilever.exact,
     "traction_bar": traction_bar.exact,
@@ -93,6 +99,7 @@ EXACT = {
 }
 
 LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder")  # scenes that have loads of their own
+SOURCED = ("heated_slab", "formulas")  # and sources
 
 
 def exact_solution(experiment):
@@ -113,4 +120,6 @@ def fitting(experiment, kind: str):
             raise ValueError(f"{kind} needs a constant E, not the {type(E).kind} of {name}")
     if experiment.loads and kind not in LOADED:
         raise ValueError(f"{kind} is a scene without loads")
+    if experiment.sources and kind not in SOURCED:
+        raise ValueError(f"{kind} is a scene without sources")
     return EXACT[kind](experiment)

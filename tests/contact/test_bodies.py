@@ -163,3 +163,22 @@ def test_corners_meet_and_exchange_nothing():
     found = body.particles.x[body.surface.owner[corners]] + body.surface.offset[corners]
     assert {tuple(point) for point in np.round(found, 12)} == {(0.5, 0.5), (1.1, 0.5), (0.5, 0.9), (1.1, 0.9)}
     assert exchanging_area(body) == pytest.approx(2.0, rel=1e-12)
+
+
+def test_of_one_body(plain):
+    """Sums of bodies are those of all, extremes each body's own; the heat that one loses the other takes in."""
+    names = [
+        f"{what}.{one}" for one in ("hot", "cold") for what in ("mass.total", "heat.total", "temperature.mean", "momentum.x", "position.max_x", "velocity.max")
+    ]
+    scene = conducting(8, contacts=[{"between": ["hot", "cold"], "conductance": 5.0}])
+    scene["output"]["observables"] = names
+    scene["bodies"]["cold"]["velocity"] = [0.0]
+    hurried = scene | {"time": {"end": 0.05, "scale": 4.0}}
+    run, fast = plain([scene, hurried])
+    s = run["series"]
+    for what in ("mass_total", "heat_total", "momentum_x"):
+        assert s[f"{what}_hot"] + s[f"{what}_cold"] == pytest.approx(s[what], abs=1e-12)
+    assert s["heat_total_hot"] == pytest.approx(s["heat_hot_cold"], abs=1e-10) and s["heat_total_hot"][-1] < -1
+    assert s["temperature_mean_hot"][0] == 400 and s["temperature_mean_cold"][0] == 300
+    assert s["position_max_x_hot"][0] == pytest.approx(0.5, abs=1e-12) and s["position_max_x_cold"] == pytest.approx(s["position_max_x"], abs=0.0)
+    assert fast["series"]["heat_hot_cold"][-1] == pytest.approx(s["heat_hot_cold"][-1], rel=1e-3)  # conductances are rates too

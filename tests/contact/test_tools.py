@@ -8,6 +8,7 @@ import pytest
 from contact_scenes import bars, dropped, pressed
 
 import mpm
+from mpm.contact.texture import texture
 from mpm.scene.build import SceneError, build
 
 
@@ -116,3 +117,37 @@ def test_observables_of_what_is_met():
     with pytest.raises(mpm.ConfigError, match="there is no wall, tool or pair of bodies 'pres'") as found:
         mpm.load(scene)
     assert len(found.value.problems) == 1
+
+
+def test_texture_of_two_bites(plain):
+    """An elastic bar between two bites: the force of the exact law, the second as the first, and its way by the tool's programme."""
+    scene = pressed(1, end=40.0)
+    path = {"time": [0, 10, 20, 30, 40], "displacement": [[0.0], [-0.1], [0.02], [-0.1], [0.02]]}
+    scene["tools"]["press"]["motion"], scene["output"] = {"path": path}, {"every": 0.1}
+    scene["output"]["observables"] = ["hardness.press", "cohesiveness.press", "springiness.press", "travel.press_x", "position.max_x.bar"]
+    (run,) = plain([scene])
+    s, found = run["series"], run["finals"]
+    assert run["kind"] == "completed" and s["travel_press_x"] == pytest.approx(np.interp(run["times"], path["time"], np.ravel(path["displacement"])), abs=1e-9)
+    assert s["position_max_x_bar"] == pytest.approx(s["position_max_x"], abs=0.0)
+    assert found["hardness_press"] == pytest.approx(-math.log(0.9) / 0.9, rel=0.03)  # a mean over an output
+    touch = np.argmax((run["times"] > 20) & (-s["force_press_x"] > 0.01 * found["hardness_press"]))
+    risen = s["position_max_x"][touch] - 1.0  # it swings, and is met where it is by then
+    assert found["springiness_press"] == pytest.approx(1.0 + risen / 0.1, abs=0.02) and found["cohesiveness_press"] == pytest.approx(1.0, abs=0.03)
+
+
+def test_texture_by_hand():
+    """Two triangles, the second half as strong, from where the first left a dent of a fifth; a halt is no second bite; one bite tells nothing."""
+    way = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.99, -0.2, 120), np.linspace(-0.19, 1, 120)])
+    force = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.97, 0, 20), np.zeros(100), np.zeros(39), np.linspace(0, 0.5, 81)])
+    found = texture(force, way)
+    assert found["hardness"] == 1.0 and found["cohesiveness"] == pytest.approx(0.8 * 0.5, rel=0.02) and found["springiness"] == pytest.approx(0.8, rel=0.02)
+    halted, stopped = np.insert(way, 50, [way[49]] * 9), np.insert(force, 50, [force[49]] * 9)
+    assert texture(stopped, halted) == pytest.approx(found, rel=1e-12)
+    assert all(np.isnan(value) for value in texture(force[:150], way[:150]).values())
+
+
+def test_a_resolved_config_with_tools_is_read_back():
+    """Sweeps and pictures read it: a path, a spin and a force, defaults and all."""
+    scene = pressed(1)
+    experiment = mpm.load(scene)
+    assert mpm.load(experiment.template()) == experiment and mpm.load(experiment.resolved()).run_id == experiment.run_id

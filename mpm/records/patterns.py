@@ -1,0 +1,22 @@
+"""Names of variables that hold other names (of probes, walls, tools, pairs of bodies): what is met, by its first word, and patterns."""
+
+import re
+
+MET = {  # what a wall, a tool or another body does: <what>.<of>, with a direction behind it for forces and torques
+    "force": ("N", "mean force since the record before, on bodies by {}"),
+    "torque": ("N m", "mean torque since the record before, on bodies by {}, about the tool's centre or the origin of coordinates"),
+    "area": ("m2", "mean area in touch since the record before, with {}"),
+    "heat": ("J", "heat taken in by the first body from the second since the start, {}"),
+    "travel": ("m", "how far {} has moved since the start"),
+    "hardness": ("N", "largest force of the first bite of {}"),
+    "cohesiveness": ("1", "work of the second bite of {} over that of the first"),
+    "springiness": ("1", "way of the second bite of {} over that of the first"),
+}
+BITES = ("hardness", "cohesiveness", "springiness")  # one number a run
+THRESHOLD = re.compile(r"time_to\.(?P<probe>[A-Za-z_]\w*)\.(?P<value>-?\d+(?:\.\d+)?)_(?P<unit>degC|K)")
+IN_DATASET = r"time_to_(?P<probe>{})_(?P<value>-?\d+(?:_\d+)?)_(?P<unit>degC|K)"
+PROBED = re.compile(r"(?P<field>displacement|stress)[._](?P<probe>[A-Za-z_]\w*)_(?P<part>[xyzr]|[xyzrt]{2})")
+OF = "area|heat|hardness|cohesiveness|springiness"
+MEETING = re.compile(rf"(?:(?P<turned>force|torque|travel)[._](?P<on>[A-Za-z_]\w*)_(?P<axis>[xyzr])|(?P<what>{OF})[._](?P<of>[A-Za-z_]\w*))")
+AT_PROBE = ("temperature", "velocity")  # fields that a probe's name may follow at once
+SINGLE = ("temperature", "heat_total", "mass", "volume", "momentum", "position", "extent", "velocity_max", "J")  # families told of one body
