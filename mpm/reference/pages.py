@@ -131,5 +131,21 @@ def scene_page(scene: Scene) -> str:
         lines += [f"![{scene.title}](gallery/{scene.name}.png)", ""]
     lines += ["```text", f"mpm new {scene.name}", f"mpm {command(texts[scene.file.name])} {scene.file.name}", "```", ""]
     lines += [f"**What to trust.** {scene.trust}", ""] if scene.trust else []
-    lines += [f"**Cost.** {scene.cost}", "", f"**Source.** {scene.source}", "", "**The config.**", "", "```yaml", texts[scene.file.name].rstrip(), "```", ""]
+    lines += [
+        f"**Cost.** {scene.cost}",
+        "",
+        f"**Source.** {scene.source}",
+        "",
+        "**The config.**",
+        "",
+        "```yaml",
+        uncommented(texts[scene.file.name]),
+        "```",
+        "",
+    ]
     return "\n".join(lines)
+
+
+def uncommented(text: str) -> str:
+    """A config without the comments that it opens with, which stand above it on the page."""
+    return "\n".join(line for line in text.rstrip().splitlines() if not line.startswith("#"))
