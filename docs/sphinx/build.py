@@ -14,6 +14,7 @@ from pathlib import Path
 from mpm_cli.listing import commands
 
 from mpm.reference.pages import pages
+from mpm.starting.scenes import command, scenes
 
 DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
@@ -41,10 +42,18 @@ def stays(target: str, folder: str) -> bool:
     return target.endswith((".md", ".png")) and not target.startswith("../") and "/" not in target.removeprefix("gallery/")
 
 
+def gallery(text: str) -> str:
+    """The page of pictures, with a row for every scene that it does not name yet."""
+    missing = [one for name, one in scenes().items() if f"`{name}`" not in text]
+    rows = [f"| `{one.name}`: {one.title} | `mpm {command(one.file.read_text(encoding='utf-8'))} {one.name}.yaml` | |\n" for one in missing]
+    return text.replace("\n## Kinds of figures", "".join(rows) + "\n## Kinds of figures")
+
+
 def gather(into: Path) -> None:
     """All pages as Sphinx reads them."""
     made = {path.stem: path.read_text(encoding="utf-8") for path in DOCS.glob("*.md")} | pages(commands())
     made |= {name.lower(): (ROOT / f"{name}.md").read_text(encoding="utf-8") for name in ("CONTRIBUTING", "CHANGELOG")}
+    made["gallery"] = gallery(made["gallery"])
     for name, text in made.items():
         (into / f"{name}.md").write_text(outward(text, "docs"), encoding="utf-8")
     for path in [*DOCS.glob("*.png"), *DOCS.glob("*/*.png")]:
