@@ -58,7 +58,7 @@ class Plain(Reporter):
     def compiling(self, text: str, expected: float) -> None:
         what = text.partition(":")[0]
         if what and what != self.compiled and expected > LONG and not self.failures_only:
-            self.write(f"{what}, about {expected:.0f} s")
+            self.write(f"{what}, once on this machine: about {expected:.0f} s")
         self.compiled = what or self.compiled
 
     def note(self, text: str) -> None:

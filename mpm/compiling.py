@@ -63,8 +63,8 @@ class Spent:
         about, seconds = met().get(kernel, MET.get(kernel, USUAL))
         about = max(about, self.functions)
         left = max(seconds - (now - self.began), LINKING * seconds)
-        which = f"{self.kernels} of about {max(self.kernels, self.about)} kernels, {NAMES.get(kernel, kernel)}"
-        text = f"compiling {which}, once on this machine: {self.functions} of about {about} functions, {left:.0f} s left"
+        functions, kernels = f"function {self.functions} of about {about}", f"kernel {self.kernels} of about {max(self.kernels, self.about)}"
+        text = f"compiling {NAMES.get(kernel, kernel)}: {left:.0f} s left, {functions}, {kernels}, once on this machine"  # a narrow terminal cuts its end
         for listener in self.heard:
             listener(text, seconds, 0.0)
 
