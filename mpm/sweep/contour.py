@@ -8,7 +8,7 @@ Source  Ranjan, Bingham and Michailidis, Technometrics 50 (2008) 527 (designs th
 
 import numpy as np
 
-SURE = 0.7  # of `until`: what a triangle may be off by
+SURE = 0.35  # of `until`: what a triangle may be off by in the middle; elsewhere it is off by more
 STEP = 1e-4  # of the ranges, for slopes
 DIGITS = 4
 
