@@ -109,6 +109,8 @@ TABLE = [
     ("outcome", "", "1", POINT, "how the run ended"),
     ("run_id", "", "1", POINT, "hash of the point's config"),
     ("model_name", "", "1", POINT, "model: auto: what was dropped from the full model"),
+    ("frame_name", "", "1", POINT, "method.frame: auto: the frame that answered, total or updated"),
+    ("frame_why", "", "1", POINT, "method.frame: auto: why"),
     ("model_error", "", "1", POINT, "model: auto: predicted error of what was dropped, as a share of the driving difference or of the change"),
     ("scaling_froude", "Fr", "1", POINT, "time scaling: largest (S v)^2/(g H), to be at most 0.02"),
     ("scaling_kinetic", "", "1", POINT, "time scaling: largest kinetic energy over the work done, to be at most 0.05"),

@@ -11,7 +11,7 @@ from mpm.records.variables import OK, SKIPPED, threshold
 from mpm.sweep.lock import Refused
 
 OWN = {"status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "step_shortest", "step_longest", "wall_time", "attempts",
-       "model_name"}  # fmt: skip
+       "model_name", "frame_name", "frame_why"}  # fmt: skip
 
 
 @dataclass

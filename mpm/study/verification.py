@@ -141,7 +141,8 @@ def measure(path: Path) -> Line:
         for other in BESIDE:
             if other in run.finals:
                 beside[other] = (*beside.get(other, ()), run.finals[other])
-    declared = getattr(experiment.exact, "order", importlib.import_module(f"mpm.verification.{type(experiment.exact).kind}").ORDER)
+    problem = importlib.import_module(f"mpm.verification.{type(experiment.exact).kind}")
+    declared = getattr(experiment.exact, "order", getattr(problem, "ORDERS", {}).get(experiment.method.frame, problem.ORDER))
     return Line(path.stem, method(experiment), refined, values, name, tuple(errors), declared, seconds, beside)
 
 

@@ -22,6 +22,7 @@ LIMIT = 2**31  # bytes of fields (as they lie in the points' files) that go into
 SERIES = 2**29  # bytes of series that do: a collect takes some two and a half times as much memory
 AXES = ("x", "r", "y", "z")
 TEXTS = ("error", "advice", "outcome")
+CHOSEN = {"model_name": ("model", "name"), "frame_name": ("frame", "name"), "frame_why": ("frame", "why")}
 
 
 def dimension_of(plan: Any) -> int | str | None:
@@ -52,7 +53,7 @@ class Table:
         self.flags = np.zeros(self.count, np.int32)
         self.numbers = {name: np.full(self.count, np.nan) for name in ("steps", "wall_time")}
         self.finals: dict[str, np.ndarray] = {}
-        self.model: np.ndarray | None = None  # which model answered each point, where the config left it open
+        self.chosen: dict[str, np.ndarray] = {}  # which model and frame answered each point, where the config left it open
         self.series_names: dict[str, None] = {}
         self.series_over, self.fields = TimeColumns(self.count), TimeColumns(self.count)
         self.axes: dict[str, np.ndarray] | None = None
@@ -101,9 +102,9 @@ class Table:
             self.numbers["steps"][place], self.numbers["wall_time"][place] = record.steps, record.wall_time
             for name, value in record.finals.items():
                 self.finals[name][place] = value
-        if "model" in record.facts:
-            self.model = np.full(self.count, "", object) if self.model is None else self.model
-            self.model[place] = record.facts["model"].get("name", "full")
+        for name, (fact, part) in CHOSEN.items():
+            if fact in record.facts:
+                self.chosen.setdefault(name, np.full(self.count, "", object))[place] = record.facts[fact].get(part, "full")
         if self.series_over.keep and self.count * len(record.times) * 8 * len(record.series) > SERIES:
             self.series_over.drop()
         self.series_over.add(place, record.times, record.series, ok)
@@ -133,7 +134,7 @@ class Table:
         }
         columns = {"status": self.status} | {name: self.text[name] for name in (*TEXTS, "warnings", "run_id")} | {"warning_flags": self.flags}
         columns |= self.numbers | {"attempts": self.attempts}
-        columns |= ({} if self.model is None else {"model_name": self.model}) | self.finals
+        columns |= self.chosen | self.finals
         probes = self.plan.cases[0].experiment.output.probes if self.plan.cases else ()
         first = self.plan.cases[0].experiment if self.plan.cases else None
         meanings |= {f"misfit_{name}": misfit(first, name, curve) for name, curve in (first.output.measured.items() if first is not None else ())}
