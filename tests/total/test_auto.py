@@ -80,3 +80,12 @@ def test_a_strain_past_ln_2_is_outgrown():
     run = simulate(scene)
     assert run.outcome.kind == "outgrown" and "strained by" in run.outcome.message
     assert run.times[-1] == pytest.approx(0.9)  # J = 1.9; the next, 2.2, is past it
+
+
+def test_a_sweep_says_which_frame_answered_each_point(tmp_path):
+    experiment = mpm.load(
+        bar(**{"bodies.bar.velocity": [0.0]}).template() | {"sweep": {"points": [{"bodies.bar.velocity": [0.01]}, {"bodies.bar.velocity": [0.9]}]}}
+    )
+    tree = mpm.sweep(experiment, out=tmp_path / "out", jobs=0)
+    assert tree.frame_name.values.tolist() == ["total", "updated"]
+    assert "on which it did not lie" in str(tree.frame_why.values[1])
