@@ -34,7 +34,7 @@ CHOSEN = {  # module: (mutants, the nearest tests)
     "mpm/materials/neo_hookean.py": (5, "tests/materials/test_neo_hookean.py"),
     "mpm/materials/laws.py": (10, "tests/materials/test_laws.py"),
     "mpm/materials/radial.py": (10, "tests/materials/test_return_maps.py tests/materials/test_over_lanes.py tests/implicit/test_tangents.py"),
-    "mpm/materials/clipped.py": (10, "tests/materials/test_return_maps.py tests/materials/test_over_lanes.py"),
+    "mpm/materials/clipped.py": (10, "tests/materials/test_return_maps.py tests/materials/test_over_lanes.py tests/materials/test_extremes.py"),
     "mpm/heat/exchange.py": (6, "tests/heat/test_surface.py tests/heat/test_exchange_kinds.py"),
     "mpm/heat/local.py": (8, "tests/heat/test_local.py"),
     "mpm/heat/programmes.py": (4, "tests/heat/test_exchange_kinds.py"),
