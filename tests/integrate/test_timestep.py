@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mpm.integrate.strain import RATE, REPORT, SPEED, STRAIN
-from mpm.integrate.timestep import limits
+from mpm.integrate.timestep import DRAG, limits
 from mpm.scene.build import build
 
 H, RHO, ALPHA, LAM, MU = 0.25, 2.0, 1.5, 3.0, 2.0
@@ -35,6 +35,15 @@ def test_elastic_heating_stiffens_the_wave(core):
     coupling = gamma**2 * core.HOT / (RHO * ALPHA * (LAM + 2 * MU))
     found = now(core, 1, {"materials.solid.expansion.modulus.gamma": gamma})
     assert found.step() == pytest.approx(now(core, 1).step() / math.sqrt(1 + coupling), rel=1e-14)
+
+
+def test_drag_and_its_absence(core):
+    """Half the time in which a drag stops a body; a traction alone sets no such limit."""
+    pull = {"of": "body", "side": "right", "traction": {"nominal": [0.2]}}
+    for loads, limit in (([pull], {}), ([pull, {"of": "body", "drag": {"rate": 8.0}}], {"drag": pytest.approx(DRAG / 8.0)})):
+        scene = build(core.experiment(1, loads=loads))
+        found = limits(scene.space, 1, scene.bodies, np.zeros((1, REPORT))).mechanical
+        assert {name: value for name, value in found.items() if name == "drag"} == limit
 
 
 def test_advection_and_velocity_gradient(core):

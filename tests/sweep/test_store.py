@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from mpm.records.point import Record
+from mpm.records.variables import TIMEOUT
 from mpm.sweep.lock import Lock, Refused, owner
 from mpm.sweep.store import Store, differences
 
@@ -117,3 +118,43 @@ def test_a_new_folder_is_durable_before_what_is_in_it(tmp_path, monkeypatch):
     place = tmp_path / "out" / "points" / "a.h5"
     Store(tmp_path / "out").put(place, b"whole")
     assert place.read_bytes() == b"whole" and set(synced) == {tmp_path, tmp_path / "out"}
+
+
+def test_the_same_claim_leaves_the_file_alone_whatever_versions_are_installed(tmp_path, monkeypatch):
+    """A finished folder that is only read stays as it is."""
+    store = Store(tmp_path)
+    store.claim(experiment(), [KAPPA], smoke=False, take_over=False)
+    file = tmp_path / "experiment.json"
+    before = file.read_bytes(), file.stat().st_ino
+    monkeypatch.setattr("mpm.sweep.store.versions", lambda: {"numpy": "0"})
+    store.claim(experiment(), [KAPPA], smoke=False, take_over=False)
+    assert (file.read_bytes(), file.stat().st_ino) == before
+    store.claim(experiment(), [KAPPA, "time.end"], smoke=False, take_over=False)
+    assert store.experiment()["versions"] == {"numpy": "0"} and store.experiment()["swept"] == [KAPPA, "time.end"]
+
+
+def test_who_joins_says_nothing_new_of_the_same_experiment(tmp_path):
+    """A point that is run alone in a sweep's folder leaves the sweep's axes there."""
+    store = Store(tmp_path)
+    store.claim(experiment(), [KAPPA], smoke=False, take_over=False)
+    store.claim(experiment(), [], smoke=False, take_over=False, join=True)
+    assert store.experiment()["swept"] == [KAPPA]
+    store.claim(experiment(time={"end": 1.0}), [], smoke=False, take_over=True, join=True)
+    assert store.experiment()["key"]["time"] == {"end": 1.0}
+
+
+def test_one_point_has_a_file_of_its_own_and_several_share_one(tmp_path):
+    store = Store(tmp_path)
+    store.save_batch([Record("ab34", 0)], "batch-00000001-0")
+    store.save_batch([Record("cd56", 0), Record("ef78", 0)], "batch-00000002-0")
+    files = sorted(path.relative_to(tmp_path).parts[0] for path in tmp_path.rglob("*.nc"))
+    assert files == ["batches", "points"] and list(store.lines(["ab34", "cd56", "ef78"])[0]) == ["ab34", "cd56", "ef78"]
+
+
+@pytest.mark.parametrize(("status", "copied"), [(0, False), (TIMEOUT, True)])
+def test_frames_of_a_point_that_may_go_on_are_copied(tmp_path, monkeypatch, status, copied):
+    told = []
+    record = SimpleNamespace(run_id="ab34", status=status, frames=SimpleNamespace(settle=lambda path, copy: told.append((path, copy))))
+    monkeypatch.setattr("mpm.records.point.pack", lambda record: b"")
+    Store(tmp_path).save(record)
+    assert told == [(tmp_path / "points" / "ab" / "ab34.frames", copied)]
