@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from mpm.plots import words
-from mpm.plots.style import OKABE_ITO, ordered, plain_ticks
 
 FEW = 64  # values that are told apart by their digits
 LETTERS = 105.0  # of ticks across a figure
@@ -52,6 +51,8 @@ class Axis:
 
     def colours(self) -> list[Any]:
         """A colour a value: in order for numbers, apart for kinds."""
+        from mpm.plots.style import OKABE_ITO, ordered  # matplotlib, which exports do without
+
         if self.category:
             return [OKABE_ITO[i % len(OKABE_ITO)] for i in range(self.size)]
         order = ordered(self.size)
@@ -76,6 +77,8 @@ class Axis:
 
     def apply(self, ax: Any) -> None:
         """Scale, ticks and label of the horizontal axis."""
+        from mpm.plots.style import plain_ticks
+
         if self.log:
             ax.set_xscale("log")
         if self.size <= 9 or self.category or not np.isfinite(self.values).all():

@@ -184,3 +184,12 @@ def test_rows_are_the_same_whatever_chunks_they_lie_in(chunk):
     ends = np.cumsum(sizes)
     for k in (0, 1, 2, 3, 4, 2, 0, 4):
         assert shots.read("a", row, int(ends[k] - sizes[k]), int(ends[k])).tolist() == list(range(ends[k] - sizes[k], ends[k]))
+
+
+def test_exports_do_without_matplotlib(tmp_path, monkeypatch):
+    import subprocess
+    import sys
+
+    fake(tmp_path, monkeypatch)
+    code = f"import sys, mpm; mpm.export({str(tmp_path / 's')!r}, to={str(tmp_path / 'a.csv')!r}); sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
