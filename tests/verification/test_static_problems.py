@@ -23,7 +23,7 @@ def test_cylinder_solves_its_equations_on_a_fine_line(shipped):
     experiment = shipped("thermal_cylinder")
     (a, _), (b, _) = experiment.bodies["pipe"].shape.lower, experiment.bodies["pipe"].shape.upper
     lam, mu = 0.3 / (1.3 * 0.4), 1 / 2.6
-    gamma = (3 * lam + 2 * mu) * 1e-7
+    gamma = (3 * lam + 2 * mu) * 1e-9
     r = np.linspace(a, b, 4001)
     h, d = r[1] - r[0], 20 + 80 * np.log(b / r) / np.log(b / a)
     middle = slice(1, -1)
