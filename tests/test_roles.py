@@ -38,6 +38,10 @@ def scenes():
     bare["materials"]["solid"] = {"density": 2.0, "elastic": {"hencky": {"lam": 3.0, "mu": 2.0}}}
     bare["walls"] = {"left": "contact", "right": "stick"}
     yield "bare", bare
+    two = common.config(1, surfaces=AIR, method={"heat_step": 0.05}, time={"end": 0.1, "step": 0.025}, grid={"dimension": 1, "size": [4.0], "cell": 0.25})
+    two["bodies"]["other"] = {"shape": {"box": {"lower": [2.6], "upper": [3.2]}}, "material": "rubber", "velocity": [0.1]}
+    two["materials"]["rubber"] = {"density": 1.0, "elastic": {"hencky": {"lam": 1.0, "mu": 1.0}}}
+    yield "two bodies", two
 
 
 def config_of():
@@ -65,6 +69,7 @@ def results():
         scene, run = common.play(mpm.load(data), stir)
         body = scene.bodies[0]
         found[name] = {field: getattr(body.particles, field).tolist() for field in KEEP} | {"series": {k: v.tolist() for k, v in run.series.items()}}
+        found[name]["others"] = {f"{k}": other.particles.x.tolist() for k, other in enumerate(scene.bodies[1:])}
         found[name]["outcome"] = str(run.outcome)
         if hasattr(body.thermal, "theta"):
             found[name] |= {"theta": body.thermal.theta.tolist(), "c": body.thermal.c.tolist()}
