@@ -60,7 +60,7 @@ def test_what_is_accepted_is_answered(core, solver, dimension, least):
     if accepted(data, {"probes": {"probe": probe}}):
         output |= {"probes": {"probe": probe}, "observables": [*observables, "time_to.probe.350_K"]}
     assert least <= {*observables} and (solver in ("cold", "point")) == ("probes" not in output or solver == "point")
-    assert (len(grid), len(particles)) == {"moving": (3, 14), "cold": (3, 14), "rigid": (1, 0), "point": (0, 0)}[solver]
+    assert (len(grid), len(particles)) == {"moving": (4, 16), "cold": (4, 16), "rigid": (1, 0), "point": (0, 0)}[solver]
     run = run_point(accepted(data, output))  # which says so itself where something is left out
     assert run.outcome.ok and {dataset_name(name) for name in output["observables"]} <= {*run.series, *run.finals}
     assert not grid or (len(run.snapshot_times) == 6 and all(any(name.startswith(field) for name in run.grid) for field in grid))

@@ -51,9 +51,9 @@ def test_a_threshold_that_is_not_reached_is_nan(core):
 def test_physics_says_what_is_compiled(core):
     found = physics(cooling(core))
     assert {"elastic: hencky", "heat: fourier", "exchange: convection", "heating: elastic"} <= set(found["compiled"])
-    assert found["absent"] == ["flow", "load", "gravity"]
+    assert found["absent"] == ["flow", "source", "load", "gravity"]
     bare = physics(core.experiment(1, drop=("surfaces", "expansion", "heating", "heat")))
-    assert bare["compiled"] == ["elastic: hencky"] and set(bare["absent"]) == {"flow", "heat", "expansion", "heating", "exchange", "load", "gravity"}
+    assert bare["compiled"] == ["elastic: hencky"] and set(bare["absent"]) == {"flow", "heat", "expansion", "heating", "exchange", "source", "load", "gravity"}
 
 
 @pytest.mark.parametrize("changes", [{}, {"kappa": 1.0}, {"time.step": 0.01}])

@@ -92,7 +92,7 @@ def test_the_units_say_of_what(tmp_path, dimension, area, units, of):
     tree = mpm.run(mpm.load(data))
     for group in (tree, tree["series"]):
         taken = group.heat_exchanged
-        assert taken.attrs["units"] == units and taken.attrs["long_name"] == f"heat taken in through surfaces since the start{of}"
+        assert taken.attrs["units"] == units and taken.attrs["long_name"] == f"heat taken in through surfaces and given by sources since the start{of}"
     assert tree.heat_exchanged.item() == pytest.approx(6000 * area, rel=1e-9)
     assert tree["series"].temperature_mean.attrs["units"] == "K"
 

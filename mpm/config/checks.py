@@ -48,7 +48,7 @@ def check(experiment: Any) -> list[Finding]:
 
 
 def unread(path: Path, slot: Slot) -> bool:
-    """Whether no rule reads the value of a path, so that changing it cannot break one: numbers and laws of materials and surfaces,
+    """Whether no rule reads the value of a path, so that another number cannot break one: those of materials and surfaces,
     but for E, which must be constant where there is elastic heating. Where only some points have kappa = 0, those fail as they run (scene/exchange.py)."""
     return path[0] in ("materials", "surfaces") and slot.quantity is not None and path[-2:] != ("hencky", "E")
 

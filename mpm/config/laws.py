@@ -178,7 +178,7 @@ def sets(material: Any) -> dict[tuple[str, str, str], Set]:
     """The parameters of a material that set, by where they stand in it."""
     places = ((section, getattr(material, section), name) for section, name in (("elastic", "E"), ("flow", "M"), ("flow", "eta")))
     found = ((section, law.kind, name, getattr(law, name, None)) for section, law, name in places if law is not None)
-    return {(section, kind, name): one for section, kind, name, one in found if isinstance(one, Set)}
+    return {(section, kind, name): one for section, kind, name, one in found if issubclass(type(one), Set)}
 
 
 def rate_of(material: Any) -> Any:

@@ -21,6 +21,12 @@ class ByFormula(Kind):
     kind: ClassVar[str] = "formula"
     text: str = doc(description="over x, y, z (r, z where round) of the material at the start [m], time t [s] and temperature T [K]")
 
+    @classmethod
+    def exemplified(cls, made: dict, handler: Any) -> dict:
+        """The text alone, right below the kind's name."""
+        text = handler.resolve_ref_schema(super().exemplified(made, handler))["properties"]["text"]
+        return {**text, "description": cls.__doc__}
+
     @model_validator(mode="before")
     @classmethod
     def right_below(cls, value: Any) -> Any:

@@ -1,6 +1,8 @@
 """Implicit steps of bodies that conduct into one another (mpm.rigid.group): as of one body, and every body's balance is kept apart.
 
 Constant laws: mpm.rigid.linear; laws of temperature: mpm.rigid.newton, every node with the table of its body.
+Fails when: a surface of one is held at a temperature (beta = inf): the answer is as good, but the ledger closes to 1e-6 of the heat only, for 1e-12
+elsewhere, as the flux of a stiff surface is a difference of large numbers (tests/verification/test_sources.py).
 `q` is an array: what each body has taken from its surroundings, and what each joint has taken from its first body [J].
 """
 

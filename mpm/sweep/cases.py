@@ -66,7 +66,8 @@ class Points:
         kept = [name for name in Experiment.model_fields if name not in touched]
         self.template = {**experiment.template(), **{name: getattr(experiment, name) for name in kept if name not in NOT_OF_A_POINT}}
         self.known = {name: experiment.key_line(name) for name in kept}
-        self.checked = all(unread(parameter.path, parameter.slot) for parameter in variation.parameters())
+        numbers = all(isinstance(value, int | float) for parameter in variation.parameters() for value in parameter.values)
+        self.checked = numbers and all(unread(parameter.path, parameter.slot) for parameter in variation.parameters())
         self.columns = {id(parameter): column for group in variation.groups for parameter, column in zip(group.parameters, columns(group), strict=True)}
         self.base = experiment.resolved()
         self.found: list[Finding] = []

@@ -5,6 +5,7 @@ import pytest
 
 from mpm.integrate import sorting as module
 from mpm.integrate.sorting import first_nodes, mixed, parts, permute, sorting
+from mpm.sources.given import Given
 from mpm.state import PER_PARTICLE, Source
 
 FLOW = {"ellipse": {"M": 0.05, "p0": 1.0, "eta": 0.2}}
@@ -51,17 +52,20 @@ def test_a_lattice_is_in_order_and_a_shuffle_is_not(core):
 
 
 def test_every_array_of_particles_is_named(core):
-    """What has a row a particle and is not in PER_PARTICLE would stay behind."""
+    """What has a row a particle and is not in PER_PARTICLE would stay behind; scratch may."""
     from mpm.scene.build import build
 
     solid = core.config(2)["materials"]["solid"]
     latched = solid | {"expansion": {"latched": {"c": 0.05, "reference": 300, "set": 450}}, "heating": {"dissipation": {}}, "flow": FLOW}
     load = [{"of": "body", "side": "right", "traction": {"nominal": [0.1, 0.0], "ramp": 0.1}}]
     seen = set()
-    for sections in ({"loads": load}, {"materials": {"solid": latched}}):
+    sets = {"ellipse": FLOW["ellipse"] | {"M": {"set": {"raw": 0.05, "baked": 0.1, "rate": 0.1}}}}
+    given = [{"of": "body", "heat": {"formula": "1 + x"}, "force": [{"formula": "y"}, 0.0]}]
+    for sections in ({"loads": load}, {"materials": {"solid": latched}}, {"materials": {"solid": solid | {"flow": sets}}}, {"sources": given}):
         body = build(core.experiment(2, {"method.particles": 3}, **sections)).bodies[0]
         N = len(body.particles.m)
         found = {(type(part), name) for part in parts(body) for name, a in zip(part._fields, part, strict=True) if isinstance(a, np.ndarray) and len(a) == N}
+        found -= {(Given, "theta")}
         assert found == {(kind, name) for kind, name in found if name in PER_PARTICLE.get(kind, ())}
         seen |= found
     assert seen == {(kind, name) for kind, names in PER_PARTICLE.items() for name in names if kind is not Source}

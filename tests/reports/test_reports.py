@@ -144,7 +144,10 @@ class Tags(html.parser.HTMLParser):
         self.text.append(data)
 
 
-@pytest.mark.parametrize("name", ["failed", "partly", "plane", "hostile", *STUDIES])
+@pytest.mark.parametrize(
+    "name",
+    ["failed", "partly", "plane", "hostile", *(pytest.param(one, marks=[pytest.mark.slow] * (one == "stability")) for one in STUDIES)],  # a map takes 100 s
+)
 def test_a_page_stands_alone_and_escapes_everything(name, tmp_path, monkeypatch):
     path = mpm.report(SWEEPS[name](tmp_path / "s", monkeypatch))
     page = path.read_text(encoding="utf-8")
