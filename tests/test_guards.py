@@ -9,6 +9,8 @@ import pytest
 import mpm
 import mpm.simulation as simulation
 from mpm.guards import GROWTH, NOISE, ROUNDING, SLOPES, Data, Guards
+from mpm.scene.build import build
+from mpm.simulation import Clock
 
 DT = 0.01
 FIELDS = {"temperature": "theta", "gradient of temperature": "c", "J": "J", "strain": "B", "affine velocity": "C", "velocity": "v", "position": "x"}
@@ -53,8 +55,6 @@ def stir(scene):
 
 def test_planted_blow_ups_are_found_at_once(core, monkeypatch):
     """500 of them: a random particle, a random step. Found within 50 steps, with the reason and the particle; what was recorded before stays, and is sound."""
-    from mpm.scene.build import build
-
     experiment, rng, whole = scene_of(core), np.random.default_rng(5), None
     for number in range(500):
         kind = PLANTS[number % len(PLANTS)]
@@ -154,8 +154,6 @@ def test_a_swing_gains_nothing(monkeypatch, transfer):
 
 
 def test_temperatures_may_overshoot_by_what_their_transfer_does(core):
-    from mpm.scene.build import build
-
     allowed = {}
     for kind in ("apic", "pic", "flip", "affine_flip"):
         allowed[kind] = Guards(build(core.experiment(1, {"method.temperature": kind, "method.bounds": "free"}))).data[0].allowed
@@ -257,8 +255,6 @@ def test_guards_cost_less_than_a_hundredth(core, monkeypatch):
 
 @pytest.mark.parametrize("allowed", [SLOPES, NOISE])
 def test_temperatures_are_judged_at_just_the_share_that_is_allowed(core, allowed):
-    from mpm.scene.build import build
-
     body = build(core.experiment(1, drop=("surfaces",))).bodies[0]
     body.thermal.theta[:] = np.linspace(0.0, 100.0, len(body.thermal.theta))
     data = Data(body, None, allowed)
@@ -273,9 +269,6 @@ def test_temperatures_are_judged_at_just_the_share_that_is_allowed(core, allowed
 
 def test_the_round_off_of_bodies_at_rest_is_no_energy(core):
     """Two bodies that touch and do not move have 1e-29 of what a strain of 1 holds."""
-    from mpm.scene.build import build
-    from mpm.simulation import Clock
-
     scene = build(core.experiment(1, drop=("surfaces", "expansion", "heating")))
     held = 0.5 * (scene.bodies[0].elastic.lam + 2 * scene.bodies[0].elastic.mu) * float(np.sum(scene.bodies[0].particles.V0))
     for strain, kind in ((1e-13, "completed"), (1e-11, "energy_growth")):
@@ -289,9 +282,6 @@ def test_the_round_off_of_bodies_at_rest_is_no_energy(core):
 
 
 def test_energy_is_judged_at_just_the_share_that_is_allowed(core):
-    from mpm.scene.build import build
-    from mpm.simulation import Clock
-
     scene = build(core.experiment(1, drop=("surfaces",)))
     for gained, kind in ((GROWTH - 0.01, "completed"), (GROWTH + 0.01, "energy_growth")):
         guards, clock = Guards(scene), Clock(scene)

@@ -3,7 +3,8 @@
     dX/dt = k(Theta) (1 - X),   k = k0 exp(-Ta/Theta) (Arrhenius, Ta = Ea/R) or a law of temperature;   parameter = raw + X (baked - raw)
 raw and baked may follow temperature. A material that sets has one X a particle; its laws are asked with (Theta, X) in the place of Theta, so each of them is a
 `Sets`, or `Alike` where it does not follow X. Elsewhere neither is compiled.
-Source: k0 = 2.8e18 1/s and Ea = 139 kJ/mol are those of starch in bread (B. Zanoni, C. Peri, D. Bruno, LWT 28 (1995) 314).
+Source: k0 = 2.8e18 1/s and Ea = 139 kJ/mol are those of starch in bread (B. Zanoni, C. Peri, D. Bruno, LWT 28 (1995) 314),
+as quoted elsewhere: not compared with the paper itself.
 """
 
 import math

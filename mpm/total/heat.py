@@ -162,7 +162,7 @@ def conduct(space, surface, thermal, X, K, warmth, dt, tolerance):
         at_surface(space, warmth, T, z, work)
         for s in range(S):
             met[0, s], met[1, s], met[2, s] = meet(surface, s, z[s], thermal.zero, part)
-        count = solve(space, X, K, warmth, met, GAMMA * dt, base, tolerance, r, z, p, q, weight, work)
+        count = solve(space, X, K, warmth, met, GAMMA * dt, base, tolerance, (r, z, p, q, weight), work)
         if count < 0:
             T[:] = start
             return 0.0, -1
@@ -222,8 +222,9 @@ def flow_in(space, X, K, warmth, met, T, dt, sources, out, work):
 
 
 @kernel
-def solve(space, X, K, warmth, met, dt, T, tolerance, r, z, p, q, weight, work):
-    """T <- the T with C (T - T_before) = dt f(T), by conjugate gradients on the change; iterations, or -1."""
+def solve(space, X, K, warmth, met, dt, T, tolerance, vectors, work):
+    """T <- the T with C (T - T_before) = dt f(T), by conjugate gradients on the change; iterations, or -1. vectors: scratch."""
+    r, z, p, q, weight = vectors
     D, active = directions(space), warmth.active
     a, slope, grad = work[0], work[1 : 1 + D], work[1 + D : 1 + 2 * D]
     for i in warmth.touched:
