@@ -2,7 +2,7 @@
 
 Seconds of bodies that move   set-up, and what each step, block of steps, heat step and output takes, alone and a particle (`moving`)
         of rigid ones         what factorisations, solutions and evaluations take (mpm.rigid.outlook), the interpreter's part of a run and an output each
-Within a factor of two of the runs of `python -m mpm.study.costs`.
+Within a factor of two of the runs of `python -m mpm.benchmarks.costs`.
 Fails when: a scene stiffens or speeds up, so that its steps are not those of its start; threads share it.
 """
 
@@ -14,7 +14,7 @@ from mpm.records.frames import SPILL
 from mpm.scene.inventory import output_bytes, physics, ticks
 from mpm.scene.refusal import SceneError, placed
 
-# Fitted to the table of `python -m mpm.study.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
+# Fitted to the table of `python -m mpm.benchmarks.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
 LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows

@@ -23,7 +23,7 @@ LAYERS = {
     "config": 4, "records": 4, "scene": 4, "starting": 4,
     "reference": 5, "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6, "fit": 6, "sensitivity": 6, "opened": 6,
-    "exports": 7, "movies": 7, "reports": 8, "notebook": 9,
+    "exports": 7, "movies": 7, "reports": 8, "notebook": 9, "benchmarks": 9,
 }  # fmt: skip
 PEERS = {
     "compiling": {"fingerprint", "jit"}, "linking": {"compiling"},

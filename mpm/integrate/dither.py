@@ -3,7 +3,7 @@
 x <- x + (dt v + d),   d = (frac(phi k) - 1/2) u,   phi = (sqrt(5) - 1)/2,   k the number of the step,   u one unit in the last place of the largest position
 
 dt v hardly changes from a step to the next, so x + dt v would be rounded to the same side each time, by up to u/2, and n steps by n u/2: without d, Cook's
-membrane in float32 was wrong by 3.5 and 4.3 % where float64 is by 2.2 and 0.8; with it, by as much as float64 (`python -m mpm.study.single cooks_membrane`).
+membrane in float32 was off by 3.5 and 4.3 % where float64 is by 2.2 and 0.8; with it, by as much as float64 (`python -m mpm.benchmarks.single cooks_membrane`).
 u is a whole number of units of any smaller position, so the mean of what is rounded is x + dt v. Multiples of phi are spread more evenly than random numbers:
 where dt v is steady, errors add up like log n, not like sqrt(n) (Kuipers & Niederreiter, Uniform distribution of sequences, 1974, chapter 2).
 float64 has digits enough: d is zero there. A body at rest in float32 trembles by u/2, 3e-8 of the grid's size.

@@ -8,7 +8,7 @@ Why    Euler's error in the step has the sign of APIC's damping, and adds to it.
 Good values   heat steps of 0.15 R0 alpha h^2/(kappa J). Twice as long the disc has 2.6e-3, 6.0e-4, 1.4e-4, but the slab 3.1e-3, 7.3e-4, 2.3e-4, 1.2e-4: between
        transfers the lumped mass shows, which is of order 1 at a free surface (docs/physics.md 12).
 Stages are for the nodes alone: for `stable` itself APIC particles in bad places grew 3.4-fold in a step of 3 R0 alpha h^2/kappa (five stages; 1 500 random
-       clouds, mpm.study.operators.stabilised).
+       clouds, mpm.benchmarks.operators.stabilised).
 Fails when   the basis is linear: a node that a particle just touches has no bound between transfers (auto is implicit there); beta h/kappa is large,
        which asks for many stages: implicit then.
 """

@@ -5,7 +5,7 @@ looked at before a block of steps, at the start of an output interval and after 
 That depends on positions and counts alone, so a run that was cut goes on with the same bits. At output times the original order is restored.
 Bodies are sampled cell by cell (mpm.scene.build) and stay as they were sampled while they are not mixed. At 1e5 particles in 3-D
 random order costs 1.2 (float32) to 1.4 (float64) of the time where it is left (`mpm bench --order shuffle` with LEAST out of reach), 1.01 where it is
-sorted, sorting counted (`python -m mpm.study.speed --only random`).
+sorted, sorting counted (`python -m mpm.benchmarks.speed --only random`).
 Bodies of less than LEAST particles, or in one direction, are left alone: they stay in the cache.
 
 Scenes of SHARED particles and more are cut into slabs (step_threaded.py), about equally full: there particles are sorted by slab, and within it by node.

@@ -8,7 +8,7 @@ heat              1/(rate_conduction + rate_exchange), with
 conduction        kappa J/(0.4 R0 alpha h^2)
 surface exchange  2 beta/(R0 alpha h)                                                        beta in the step: large beta, small step
 
-Safe over 1e5 random arrangements a dimension, every transfer: python -m mpm.study.operators. A heat step of several sub-steps takes SUBSTEPS of the
+Safe over 1e5 random arrangements a dimension, every transfer: python -m mpm.benchmarks.operators. A heat step of several sub-steps takes SUBSTEPS of the
 limit: between transfers a lone particle at the edge of a cell bears 1/3 only (APIC at 0.4 grows tenfold in eight sub-steps). Hat functions bear nothing
 between transfers: there is no limit for them here, and `auto` takes implicit steps (mpm/scene/build.py).
 

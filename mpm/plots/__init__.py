@@ -27,7 +27,7 @@ Further files
     sensitivity the figure of `mpm sensitivity`
     stability   the figure of `mpm stability`
     style       how figures look
-    theory      the figure of `mpm.study.theory`
+    theory      the figure of `mpm.benchmarks.theory`
     view        what a dataset holds, as figures ask for it
 """
 

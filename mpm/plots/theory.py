@@ -1,4 +1,4 @@
-"""The figure of `mpm.study.theory`: what transfers do by themselves, measured, beside the line of theory."""
+"""The figure of `mpm.benchmarks.theory`: what transfers do by themselves, measured, beside the line of theory."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from mpm.plots.style import INK, OKABE_ITO, QUIET, figure, save, styled
 
 
 def transfers(data: Any, path: Path | str | None = None) -> Any:
-    """Three panels from the dataset of `mpm.study.theory.dataset`; to a file where a path is given."""
+    """Three panels from the dataset of `mpm.benchmarks.theory.dataset`; to a file where a path is given."""
     with styled():
         fig = figure("What transfers do by themselves: measured (marks), theory (lines)", 4.2)
         left, middle, right = fig.subplots(1, 3)

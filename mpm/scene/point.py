@@ -19,7 +19,7 @@ from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, R
 AXES = ("xx", "yy", "zz")
 PRESCRIBED = (("strain_rate", RATE), ("stretch_rate", NOMINAL), ("stress", STRESS))
 NS_STEP = 600.0  # nanoseconds a step, with two directions of prescribed stress
-LEAST_SECONDS = 0.6e-3  # of the shortest run; both fitted to `python -m mpm.study.costs`
+LEAST_SECONDS = 0.6e-3  # of the shortest run; both fitted to `python -m mpm.benchmarks.costs`
 MOST = 2**25  # numbers in the record of one compiled call: 256 MB
 
 

@@ -2,7 +2,7 @@
 
     choose(experiment, tolerance) -> Choice      offer, told: the same for `mpm plan`
 
-1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json, from `python -m mpm.study.figures`).
+1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json: `python -m mpm.benchmarks.figures`).
    Of the numerical methods in them, at the automatic step, the one that reaches the tolerance in the least time, over all of those charts, is taken.
 2  The cell comes from pilots of the user's own scene (study/pilots.py).
 """
@@ -51,7 +51,7 @@ def numerical(settings: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def charted() -> list[dict]:
-    """The settings of the charts: {study, physics, method, set, cell, steps (none: automatic), error, seconds} (`python -m mpm.study.figures`)."""
+    """The settings of the charts: {study, physics, method, set, cell, steps (none: automatic), error, seconds} (`python -m mpm.benchmarks.figures`)."""
     return json.loads(FRONTS.read_text(encoding="utf-8"))
 
 

@@ -2,7 +2,7 @@
 
 u = U sin kX, theta = T cos kX:  U' = V,  V' = -M k^2/R0 U + gamma k/R0 T,  T' = -gamma Theta_0 k/(R0 alpha) V - kappa k^2/(R0 alpha) T,  M = lam + 2 mu.
 Frequency and damping of a run are those of a exp(-s t) cos(omega t) + b exp(-s t) sin(omega t) + c exp(-r t), fitted to U(t).
-At 64 cells apic/apic (velocity/temperature) keeps both best, -0.03 % and -0.2 %; pic has ten times the damping: `python -m mpm.study.wave`.
+At 64 cells apic/apic (velocity/temperature) keeps both best, -0.03 % and -0.2 %; pic has ten times the damping: `python -m mpm.benchmarks.wave`.
 Order   2 in the cell
 """
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import mpm
+from mpm.benchmarks.implicit import stack
 from mpm.runner import run_point
-from mpm.study.implicit import stack
 
 COLUMN = Path(__file__).parents[2] / "configs" / "studies" / "viscous_column.yaml"
 

@@ -8,10 +8,10 @@ import xarray
 from beams import TIP, beam
 
 import mpm
+from mpm.benchmarks.figures import STUDIES
+from mpm.benchmarks.promises import PROBLEMS
 from mpm.study.chart import chart, with_chart
-from mpm.study.figures import STUDIES
 from mpm.study.front import cheapest, pareto, sentence
-from mpm.study.promises import PROBLEMS
 from mpm.study.richardson import limit
 from mpm.study.timing import Timings
 from mpm.sweep.engine import Options

@@ -7,10 +7,10 @@ import pytest
 from beams import TIP, beam
 
 import mpm
+from mpm.benchmarks.figures import STUDIES
+from mpm.benchmarks.promises import PROBLEMS, rivals
 from mpm.study.choose import choose, numerical, offer, physics, rank, reach, told
-from mpm.study.figures import STUDIES
 from mpm.study.pilots import NoChoice, grids, left, refine, settled
-from mpm.study.promises import PROBLEMS, rivals
 
 SLAB = {
     "title": "Slab",
@@ -151,7 +151,7 @@ def test_what_cannot_be_chosen_is_said():
 @pytest.mark.slow  # compilations, pilots
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_promises_are_kept_on_the_charted_problems(name):
-    """3 %, 1 % and 0.3 %; times beside the cheapest charted setting are measured by `python -m mpm.study.promises`."""
+    """3 %, 1 % and 0.3 %; times beside the cheapest charted setting are measured by `python -m mpm.benchmarks.promises`."""
     from mpm.study.pilots import Gauge
 
     experiment = mpm.load(STUDIES / f"{name}.yaml")

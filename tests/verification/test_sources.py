@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import mpm
+from mpm.benchmarks.verification import refinement
 from mpm.runner import run_point
 from mpm.scene.refusal import SceneError
-from mpm.study.verification import refinement
 
 FOLDER = Path(__file__).parents[2] / "configs" / "verification"
 SLAB = {

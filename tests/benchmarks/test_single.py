@@ -3,7 +3,7 @@
 import pytest
 
 import mpm
-from mpm.study.single import FOLDER, Pair, in_precision, measure, moving, written
+from mpm.benchmarks.single import FOLDER, Pair, in_precision, measure, moving, written
 
 
 def test_a_row():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm.study.surfaces import OFFSETS, WAYS, case, table
+from mpm.benchmarks.surfaces import OFFSETS, WAYS, case, table
 
 
 @pytest.fixture(scope="module")

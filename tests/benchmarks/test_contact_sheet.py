@@ -6,8 +6,8 @@ import sys
 import pytest
 from PIL import Image
 
-from mpm.study import contact_sheet
-from mpm.study.contact_sheet import ACROSS, CAPTION, CONFIGS, THUMB, Shown, configs, page, sheet, show
+from mpm.benchmarks import contact_sheet
+from mpm.benchmarks.contact_sheet import ACROSS, CAPTION, CONFIGS, THUMB, Shown, configs, page, sheet, show
 
 
 def test_every_shipped_config_is_met_once():
@@ -41,7 +41,7 @@ def test_a_command_that_fails_or_draws_nothing_is_a_fault(tmp_path, monkeypatch)
 
 @pytest.mark.slow
 def test_the_command(tmp_path):
-    run = [sys.executable, "-m", "mpm.study.contact_sheet", str(tmp_path / "out"), "slab", "lumped_cooling", "--smoke"]
+    run = [sys.executable, "-m", "mpm.benchmarks.contact_sheet", str(tmp_path / "out"), "slab", "lumped_cooling", "--smoke"]
     done = subprocess.run(run, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     pictures = sorted(str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*/*.png"))

@@ -1,4 +1,4 @@
-"""Our side of the rows of mpm.study.speed that are not the thrown cube: `python -m mpm.study.speed_models WHAT`, one JSON line each.
+"""Our side of the rows of mpm.benchmarks.speed that are not the thrown cube: `python -m mpm.benchmarks.speed_models WHAT`, one JSON line each.
 
 whole [f32]   ns a particle-step of a sheared cube that flows everywhere (Hencky, radial return, heat through its faces), with physics taken away in turn
 disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the answer, geometry and assembly included

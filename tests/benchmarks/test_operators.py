@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from mpm.benchmarks import affine
+from mpm.benchmarks.coupled import last_stable, radius, step
+from mpm.benchmarks.operators import METHODS, Cloud, random_cloud, regular, search, stabilised, substeps
 from mpm.integrate.heat_chebyshev import stages
 from mpm.integrate.timestep import CONDUCTION, SUBSTEPS, WAVE
-from mpm.study import affine
-from mpm.study.coupled import last_stable, radius, step
-from mpm.study.operators import METHODS, Cloud, random_cloud, regular, search, stabilised, substeps
 
 TABLE = {"APIC": (1.31, 1.65), "PIC": (1.10, 1.42), "FLIP": (1.07, 1.35)}  # mls, bspline: regular, 2 a cell
 
@@ -32,7 +32,7 @@ def test_an_isolated_particle_has_the_limits_of_the_table():
 
 @pytest.mark.parametrize("D", [1, 2, 3])
 def test_random_arrangements_are_never_below_the_safe_steps(D):
-    """A short form of `python -m mpm.study.operators --count 100000`."""
+    """A short form of `python -m mpm.benchmarks.operators --count 100000`."""
     for name, value in search(D, 150, seed=7)["worst"].items():
         if name == "heat grid":
             assert value >= SUBSTEPS * CONDUCTION

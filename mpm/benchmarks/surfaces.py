@@ -1,4 +1,4 @@
-"""Three ways to exchange heat at a free surface, measured on bodies at rest (docs/physics.md 3, 10 and 11). `python -m mpm.study.surfaces` prints the table.
+"""Three ways to exchange heat at a free surface, on bodies at rest (docs/physics.md 3, 10 and 11). `python -m mpm.benchmarks.surfaces` prints the table.
 
 exact     from the boundary particle, corrected to the surface: w~ = w + grad(w) (x_s - x_p). What moving bodies use (mpm.integrate.surface_flux)
 depth     at the boundary particle, through the layer above it: w, and beta/(1 + beta d/kappa), d = V/(2 S)
@@ -165,7 +165,7 @@ def table(kinds=("slab", "disc"), biots=(1.0, 10.0, np.inf), cells=None) -> str:
 
 TITLE = """# Three ways to exchange heat at a free surface
 
-Made by `python -m mpm.study.surfaces > configs/verification/surfaces.md`; what the ways and columns are stands at the head of `mpm/study/surfaces.py`.
+Made by `python -m mpm.benchmarks.surfaces > configs/verification/surfaces.md`; ways and columns are explained at the head of `mpm/benchmarks/surfaces.py`.
 
 """
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from mpm.study import reduction
-from mpm.study.reduction import FOLDER, Line, kept, summary
+from mpm.benchmarks import reduction
+from mpm.benchmarks.reduction import FOLDER, Line, kept, summary
 
 
 def test_a_line_of_the_study():
@@ -43,7 +43,7 @@ def test_what_was_measured_is_kept(tmp_path, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.yaml")), ids=lambda path: path.stem)
 def test_the_smaller_model_answers_within_the_tolerance(path):
-    """What `python -m mpm.study.reduction` measures, without its rounds of timing: something is dropped, the answer stays within 1 %, and it is foretold."""
+    """What `python -m mpm.benchmarks.reduction` measures, without its rounds of timing: something is dropped, the answer stays within 1 %, as foretold."""
     import mpm
     from mpm.reduce.difference import gap
     from mpm.reduce.offers import asked, driving

@@ -1,5 +1,5 @@
-"""The table of the verification problems: `python -m mpm.study.verification` writes configs/verification/README.md; with names, only those rows again
-(`python -m mpm.study.verification hencky_bar standing_wave`; the last brings the table of transfers of mpm.study.wave).
+"""The table of the verification problems: `python -m mpm.benchmarks.verification` writes configs/verification/README.md; with names, only those rows again
+(`python -m mpm.benchmarks.verification hencky_bar standing_wave`; the last brings the table of transfers of mpm.benchmarks.wave).
 
 Every config there, as one point, at three resolutions: those of its sweep over grid.cell or time.step, else its own halved twice (cells of a
 body on a grid, steps of a material point). The order is fitted to all three; a problem that is exact in any step, or
@@ -14,15 +14,15 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm.study import CONFIGS
-from mpm.study.wave import table
+from mpm.benchmarks import CONFIGS
+from mpm.benchmarks.wave import table
 
 ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperature, K", "error_relative": "all fields, relative"}  # the first that a run has
 BESIDE = ("error_velocity", "error_stress")
 FOLDER = CONFIGS / "verification"
 HEAD = """# Verification problems
 
-Made by `python -m mpm.study.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands
+Made by `python -m mpm.benchmarks.verification`. Each line is a config of this folder at the three resolutions that are named; what the problem is stands
 at the head of its config, the exact solution in `mpm/verification/`. Errors are root mean squares: of
 displacement over all times and particles, relative (of what comes to rest: at the end), beside it of velocity and stress where the solution gives
 them, with their order in brackets; of temperature at the end. Time is that of the three runs on a busy machine, without compilation. Robin problems have
@@ -34,7 +34,7 @@ quadratic spline has a kink. The error of that falls with the number of particle
 particles a cell `hencky_bar` goes from 1.3e-3 and 2.2e-3 at 32 cells to 1.5e-3 and 2.0e-3 at 64, where its end moves by two cells; with 8 to 2.5e-4 and
 5.2e-4, order 1.5 or better from 8 cells on (`error_velocity`, `error_stress` of `mpm run configs/verification/hencky_bar.yaml --set grid.cell=0.015625 --set
 method.particles=8`). Cubic splines have no such kink: `hencky_bar_cubic` is of order 2 in all three.
-How heat is exchanged at a free surface, three ways measured: [surfaces.md](surfaces.md), made by `python -m mpm.study.surfaces`.
+How heat is exchanged at a free surface, three ways measured: [surfaces.md](surfaces.md), made by `python -m mpm.benchmarks.surfaces`.
 
 | config | method | refined | error | at three resolutions | order | declared | velocity | stress | time, s |
 |---|---|---|---|---|---|---|---|---|---|
@@ -42,7 +42,7 @@ How heat is exchanged at a free surface, three ways measured: [surfaces.md](surf
 WAVE = """
 ## Which transfer keeps a thermoelastic wave
 
-`python -m mpm.study.wave`: errors of the frequency and of the physical damping of `standing_wave` at 64 cells, by transfer of velocity and of temperature.
+`python -m mpm.benchmarks.wave`: errors of the frequency and of the physical damping of `standing_wave` at 64 cells, by transfer of velocity and of temperature.
 
 """
 

@@ -1,4 +1,4 @@
-"""All pictures of all scenes and studies, by the commands that a user types: `python -m mpm.study.contact_sheet OUT [NAME...] [--smoke]`.
+"""All pictures of all scenes and studies, by the commands that a user types: `python -m mpm.benchmarks.contact_sheet OUT [NAME...] [--smoke]`.
 
     OUT/NAME/*.png      every figure of configs/scenes, verification and studies: `mpm sweep` or `mpm fit`, `mpm plot` of all kinds, `mpm sensitivity`
                         of samples, `mpm chart --quick`, `mpm stability`
@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mpm.study import CONFIGS
+from mpm.benchmarks import CONFIGS
 
 FOLDERS = ("scenes", "verification", "studies", "studies/stability", "studies/reduction")
 THUMB, ACROSS, CAPTION = 360, 6, 18  # pixels; pictures a row; pixels
@@ -126,7 +126,7 @@ def sheet(pictures: list[Path], path: Path) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m mpm.study.contact_sheet", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m mpm.benchmarks.contact_sheet", description=__doc__.splitlines()[0])
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for datasets, pictures and the sheet")
     parser.add_argument("names", nargs="*", metavar="NAME", help="configs, or folders of them; all unless given")
     parser.add_argument("--smoke", action="store_true", help="coarse and short, as each config's smoke section says")

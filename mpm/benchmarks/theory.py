@@ -1,4 +1,4 @@
-"""What transfers do to a field by themselves, measured beside the line of theory: `python -m mpm.study.theory` draws docs/theory.png.
+"""What transfers do to a field by themselves, measured beside the line of theory: `python -m mpm.benchmarks.theory` draws docs/theory.png.
 
 PIC of temperature      each transfer takes (kh)^2/4 of a mode: a fake conductivity R0 alpha h^2/(4 dt), larger for smaller steps (docs/physics.md 3)
 APIC of temperature     each transfer takes 0.024 (kh)^4 with 2 particles a cell (docs/physics.md 3)

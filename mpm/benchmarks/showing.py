@@ -1,4 +1,4 @@
-"""What showing results costs, by the commands that a user types: `python -m mpm.study.showing [OUT]` prints it (a temporary folder unless OUT is given).
+"""What showing results costs, by the commands that a user types: `python -m mpm.benchmarks.showing [OUT]` prints it (a temporary folder unless OUT is given).
 
 movie     48 frames of 20 000 particles, 600 x 400 pixels        asked: 15 s
 report    a sweep of 1 000 points                                 asked: 10 s, 3 MB

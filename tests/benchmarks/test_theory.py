@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm.study.theory import fake_conductivity, kept, loss, strained
+from mpm.benchmarks.theory import fake_conductivity, kept, loss, strained
 
 
 @pytest.mark.parametrize("dt", [1e-5, 1e-3, 1e-1])

@@ -3,7 +3,7 @@
 import pytest
 
 import mpm
-from mpm.study.verification import FOLDER, Line, measure, refinement
+from mpm.benchmarks.verification import FOLDER, Line, measure, refinement
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_every_config_has_an_exact_solution():
 
 
 def test_named_rows_are_measured_again_and_the_others_stay(tmp_path, monkeypatch):
-    from mpm.study import verification
+    from mpm.benchmarks import verification
 
     text = verification.HEAD + "| adiabat | kept |\n| relaxation | old |\n" + verification.WAVE + "| the wave |\n"
     assert verification.written(text) == ({"adiabat": "| adiabat | kept |", "relaxation": "| relaxation | old |"}, "| the wave |\n")
@@ -52,7 +52,7 @@ def test_named_rows_are_measured_again_and_the_others_stay(tmp_path, monkeypatch
 @pytest.mark.slow
 def test_table_of_transfers():
     """The best is within 0.2 % of the frequency and 5 % of the damping; PIC is last, and the promise is not for it."""
-    from mpm.study.wave import table
+    from mpm.benchmarks.wave import table
 
     found, text = table()
     assert found[0].promised() and not found[-1].promised() and "pic" in (found[-1].velocity, found[-1].temperature)

@@ -1,6 +1,6 @@
-"""Affine FLIP over random arrangements: the spectral radius of its whole step at the safe steps: `python -m mpm.study.affine [--count N] [--dimension 1 2 3]`.
+"""Affine FLIP over random arrangements and its spectral radius at the safe steps: `python -m mpm.benchmarks.affine [--count N] [--dimension 1 2 3]`.
 
-Its nodes alone do not say what its particles keep (they keep their value and take the grid's slope), so that mpm.study.operators has no closed form for it.
+Its nodes alone do not say what its particles keep (they keep their value and take the grid's slope), so mpm.benchmarks.operators has no closed form for it.
 Particles carry theta and its slope c, or v, C and the strain; with P and Q the transfers of value and slope to the nodes, W back, b the blend,
 
     heat        t = P theta + Q c;  t+ = t - dt A t;  theta' = (1 - b) theta + W (t+ - t) + b W t;  c' = 4 d t+
@@ -16,8 +16,8 @@ import time
 
 import numpy as np
 
+from mpm.benchmarks.operators import Cloud, random_cloud
 from mpm.integrate.timestep import CONDUCTION, WAVE
-from mpm.study.operators import Cloud, random_cloud
 
 BLEND = 0.02  # what configs take unless told otherwise
 SLACK = 1e-6  # a manifold eigenvalue 1 (a body that flies and turns) is found to a root of the last bit

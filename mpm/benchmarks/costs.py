@@ -1,9 +1,9 @@
-"""What `mpm plan` says a point costs, beside what it costs: `python -m mpm.study.costs [PART OF A NAME...]` prints the table (about a minute, once compiled).
+"""What `mpm plan` says a point costs, beside what it costs: `python -m mpm.benchmarks.costs [PART OF A NAME...]` prints the table (a minute, once compiled).
 
 Predicted     mpm.costs.estimate, which runs nothing
 Measured      processor time of a run without the comparison with an exact solution, after one that compiles: the least of ROUNDS, or of one of LONG seconds
 The constants of mpm/costs.py are fitted to this table. What they cannot foresee: steps that change as a scene stiffens or speeds up, and how many steps an
-adaptive method will take. A factor of two is what they aim at; tests/study/test_costs.py asks for it.
+adaptive method will take. A factor of two is what they aim at; tests/benchmarks/test_costs.py asks for it.
 """
 
 import sys
@@ -11,7 +11,7 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-from mpm.study import CONFIGS
+from mpm.benchmarks import CONFIGS
 
 SCENES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("scenes/slab", {}),

@@ -3,8 +3,8 @@
 import pytest
 
 import mpm
+from mpm.benchmarks.costs import CONFIGS, SCENES, measure
 from mpm.costs import estimate
-from mpm.study.costs import CONFIGS, SCENES, measure
 
 
 def seconds(name, changes):

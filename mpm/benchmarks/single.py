@@ -1,4 +1,4 @@
-"""The verification problems in single precision: `python -m mpm.study.single` writes configs/verification/single.md; with names, only those rows again.
+"""The verification problems in single precision: `python -m mpm.benchmarks.single` writes configs/verification/single.md; with names, only those rows again.
 
 `method.precision: float32` is for bodies that move: their particles and nodes. Bodies that do not move and material points always compute in float64, whatever
 it says. So every problem that moves is run in both precisions at the two coarsest of the three resolutions of configs/verification/README.md. What float32 may
@@ -18,17 +18,17 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm.study.verification import FOLDER, method, refinement
+from mpm.benchmarks.verification import FOLDER, method, refinement
 
 HALF_ULP = 2.0**-24
 SIGMAS = 3.0
 HEAD = """# Verification problems in single precision
 
-Made by `python -m mpm.study.single`. The problems of [README.md](README.md) whose bodies move, at two resolutions each, in both precisions: relative errors
+Made by `python -m mpm.benchmarks.single`. The problems of [README.md](README.md) whose bodies move, at two resolutions, in both precisions: relative errors
 of displacement. Rounding is what adding dt v to a position in float32 would leave after all steps, relative to the displacement: every half ulp to one
 side (which `mpm/integrate/dither.py` prevents), and as a random walk: where that is near one (standing_wave moves by 1e-5 of its length), float32 cannot do
 the problem. Bodies that do not move and material points compute in float64 whatever `method.precision` says, so their rows are those of README.md
-(`tests/study/test_single.py` compares bits).
+(`tests/benchmarks/test_single.py` compares bits).
 
 | config | method | refined | float64 | float32 | rounding to one side | random walk | order, float64 | float32 |
 |---|---|---|---|---|---|---|---|---|

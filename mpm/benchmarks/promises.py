@@ -1,4 +1,4 @@
-"""Does `mpm plan --tol` keep its promise? `python -m mpm.study.promises [NAME...]` prints the table, from the charts in fronts.json.
+"""Does `mpm plan --tol` keep its promise? `python -m mpm.benchmarks.promises [NAME...]` prints the table, from the charts in fronts.json.
 
 For the six charted problems and 3 %, 1 % and 0.3 %: what study/choose.py picks, the error that it then has, and its time over that of the cheapest setting of
 the chart which meets the tolerance with the same model (interleaved, least of ROUNDS). The charts that the method is chosen from are those of these problems:
@@ -79,8 +79,8 @@ def rivals(name: str, experiment: Any) -> list[dict]:
 
 def main() -> None:
     """The table of the problems named, or of all, and how many of its promises are kept."""
+    from mpm.benchmarks.figures import STUDIES
     from mpm.config import load
-    from mpm.study.figures import STUDIES
 
     print("| problem | tolerance | chosen | predicted | true | met | time over cheapest | cheapest charted | planning, s |\n" + "|---" * 9 + "|")
     rows = []

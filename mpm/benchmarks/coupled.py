@@ -1,4 +1,4 @@
-"""One whole step of 1-D thermoelastic particles as a matrix, and its spectral radius: what mpm.study.operators has by theory, and coupling.
+"""One whole step of 1-D thermoelastic particles as a matrix, and its spectral radius: what mpm.benchmarks.operators has by theory, and coupling.
 
 State of every particle: v, C (APIC), eps, theta.    v_i = p_i/m_i, v_i+ = v_i + dt f_i/m_i, f = -sum V (eps - gamma theta) g
 eps += dt g v+;   theta -= gamma Theta/(R0 alpha) dt g v    with v = v+ (new: how mpm steps) or v = v_i (old: here only, to show that it fails)
@@ -8,7 +8,7 @@ Units: cell, density, lam + 2 mu, Theta/(R0 alpha) are 1: dt is the Courant numb
 
 import numpy as np
 
-from mpm.study.operators import Cloud
+from mpm.benchmarks.operators import Cloud
 
 
 def step(cloud: Cloud, method: str, gradient: str, co: float, coupling: float = 0.0, old: bool = False) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Return maps: error against nanoseconds a state (docs/chart_return_map.png, by `python -m mpm.study.figures return_map`).
+"""Return maps: error against nanoseconds a state (docs/chart_return_map.png, by `python -m mpm.benchmarks.figures return_map`).
 
 States outside the ellipse are held for a time; a map takes it in 1, 2, 4, ... implicit Euler steps. Error: root mean square over the states of (p, q)/M against
 the rate equations (docs/physics.md 5.3), integrated to 1e-10 by a Runge-Kutta method of order 8. Time: least of the rounds, interleaved, per state.

@@ -1,4 +1,4 @@
-"""Do the tests bite? `python -m mpm.study.mutants [--only PATTERN] [--of N] [--seed S] [--minutes M]` changes one place of the product at a time
+"""Do the tests bite? `python -m mpm.benchmarks.mutants [--only PATTERN] [--of N] [--seed S] [--minutes M]` changes one place of the product at a time
 and runs the nearest tests. What was found is kept in docs/mutants.csv: the same command goes on where it was stopped. `why` says why a survivor may live.
 
 Each module of CHOSEN gets its share of mutants: a comparison turned round, a sum made a difference, a product a quotient, a number doubled, `and` made `or`, a
@@ -177,7 +177,7 @@ def study(folder: Path, path: str, picked: list, tests: str, rows: dict[tuple, d
 
 
 def main() -> None:
-    words = argparse.ArgumentParser("python -m mpm.study.mutants", description="Change one place of the product at a time: do the nearest tests fail?")
+    words = argparse.ArgumentParser("python -m mpm.benchmarks.mutants", description="Change one place of the product at a time: do the nearest tests fail?")
     words.add_argument("--only", default="", help="modules whose path holds this text")
     words.add_argument("--of", type=int, default=1, help="times as many mutants")
     words.add_argument("--seed", type=int, default=1, help="which places are changed")

@@ -1,4 +1,4 @@
-"""Critical steps of particle arrangements, exactly: `python -m mpm.study.operators [--count N] [--dimension 1 2 3] [--json FILE]`.
+"""Critical steps of particle arrangements, exactly: `python -m mpm.benchmarks.operators [--count N] [--dimension 1 2 3] [--json FILE]`.
 
 The weights are those of mpm.basis, the safe steps those of mpm.integrate.timestep. With M the nodal masses, K = sum V B^T C B, A = M^-1/2 K M^-1/2 and the
 transfer there and back on the nodes T = M^-1/2 (W V W^T) M^-1/2 (APIC: with its slopes, S), one step from the nodes to the nodes is
@@ -11,7 +11,7 @@ The symmetric pencils of both meet the circle at z = -1 first (their roots have 
     heat        dt   = 1/lambda_max(R A R),  R^2 = T/(1 + X)
     mechanics   dt^2 = 2/lambda_max(R A R),  R^2 = 1 - T/(1 + X)
 
-mpm.study.coupled builds the whole step of the particles instead and takes its spectral radius; tests/study/test_operators.py compares the two, for XPIC
+mpm.benchmarks.coupled builds the whole step of the particles and takes its spectral radius; tests/benchmarks/test_operators.py compares the two, for XPIC
 too, where the argument does not cover roots off the real axis. The blocks are at rest and unstressed: loads, strain and motion have limits of their own.
 """
 
@@ -210,7 +210,7 @@ def regular(D: int, particles: int = 2, cells: int = 12) -> Cloud:
 
 def main(arguments=None) -> int:
     """Print the tables."""
-    parser = argparse.ArgumentParser(prog="python -m mpm.study.operators", description="Critical steps of random and regular arrangements.")
+    parser = argparse.ArgumentParser(prog="python -m mpm.benchmarks.operators", description="Critical steps of random and regular arrangements.")
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--dimension", type=int, nargs="+", default=[1, 2, 3])
     parser.add_argument("--seed", type=int, default=0)

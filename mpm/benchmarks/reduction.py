@@ -1,4 +1,4 @@
-"""No more model than a scene needs, measured: `python -m mpm.study.reduction` writes configs/studies/reduction/README.md.
+"""No more model than a scene needs, measured: `python -m mpm.benchmarks.reduction` writes configs/studies/reduction/README.md.
 
 Every config there says `model: auto`. It is run so and as the full model, in turn; the true error is the largest difference between the two in anything
 that the config asks for (mpm.reduce.difference), beside the error that was predicted without running the full model. Time counts the whole of `model: auto`:
@@ -12,14 +12,14 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from mpm.study import CONFIGS
+from mpm.benchmarks import CONFIGS
 
 FOLDER = CONFIGS / "studies" / "reduction"
 STORE = Path("results") / "reduction.json"
 REPEATS, ENOUGH = 3, 5.0  # runs of each, unless one takes so many seconds
 HEAD = """# No more model than a scene needs
 
-Made by `python -m mpm.study.reduction` in {seconds:.0f} s of processor time, compilation included. Each line is a config of this folder with `model: auto` at
+Made by `python -m mpm.benchmarks.reduction` in {seconds:.0f} s of processor, compiling included. Each line is a config of this folder with `model: auto` at
 1 %: what was dropped, the error predicted for that before the full model was ever run, the true error against the full model (the largest over everything
 that the config asks for: of temperatures as a share of the driving difference, of times relative, of motion relative to how much it changes), and
 wall times on one core of a shared machine, least of {repeats} runs in turn ({enough:g} s or longer: of one), compiled before. The time of `model: auto` is all

@@ -1,4 +1,4 @@
-"""Which transfer keeps a thermoelastic wave: errors of its frequency and of its physical damping, by transfer. `python -m mpm.study.wave` prints the table.
+"""Which transfer keeps a thermoelastic wave: errors of its frequency and damping, by transfer. `python -m mpm.benchmarks.wave` prints the table.
 
 configs/verification/standing_wave.yaml at CELLS cells: 4 particles a cell, 0.6 of the automatic step, heat every 0.01 s. The wave loses 0.9 % of its height
 a second to heat, so what a transfer loses by itself shows in the damping: that is the best separator there is (docs/physics.md 7, problem 6).
@@ -6,7 +6,7 @@ a second to heat, so what a transfer loses by itself shows in the damping: that 
 
 from dataclasses import dataclass
 
-from mpm.study import CONFIGS
+from mpm.benchmarks import CONFIGS
 
 CELLS = 64
 PROMISED = 2e-3, 0.05  # errors of frequency and of damping that the best transfer must be within

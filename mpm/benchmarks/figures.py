@@ -1,4 +1,4 @@
-"""The figures of docs/accuracy.md, by one command: `python -m mpm.study.figures [NAME...]`.
+"""The figures of docs/accuracy.md, by one command: `python -m mpm.benchmarks.figures [NAME...]`.
 
 Each configs/studies/<name>.yaml that has a `chart:` is charted into results/<name>-chart (what is there is kept) and its figure goes to docs/chart_<name>.png;
 `theory` is docs/theory.png. `--peer NAME=COMMAND` as in `mpm chart`, for those of BESIDE: scikit-fem lives in an environment of its own; `--fem PYTHON` is
@@ -53,8 +53,8 @@ def small(path: Path) -> None:
 
 def theory() -> list[str]:
     """docs/theory.png."""
+    from mpm.benchmarks.theory import dataset
     from mpm.plots.theory import transfers
-    from mpm.study.theory import dataset
 
     transfers(dataset(), DOCS / "theory.png")
     small(DOCS / "theory.png")
@@ -63,9 +63,9 @@ def theory() -> list[str]:
 
 def return_map() -> list[str]:
     """docs/chart_return_map.png."""
+    from mpm.benchmarks.return_map import dataset
     from mpm.plots.chart import speed_accuracy
     from mpm.study.front import duration, percent
-    from mpm.study.return_map import dataset
 
     data = dataset()
     speed_accuracy(data, DOCS / "chart_return_map.png")
@@ -102,7 +102,7 @@ def charted(name: str, peers: dict[str, str], cold: bool, quick: bool = False) -
 
 def remember(name: str, experiment, data) -> None:
     """The settings with error and time into fronts.json: at the automatic step what `mpm plan --tol` chooses from (study/choose.py); with steps of their own,
-    of the model that the config itself names, what study/promises.py measures that choice by."""
+    of the model that the config itself names, what benchmarks/promises.py measures that choice by."""
     from mpm.study.choose import FRONTS, numerical, physics
     from mpm.sweep.settings import plan
 

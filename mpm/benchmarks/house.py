@@ -1,4 +1,4 @@
-"""The house in numbers, of any checkout: `python -m mpm.study.house [FOLDER …]` prints one column a folder, so that before stands beside after.
+"""The house in numbers, of any checkout: `python -m mpm.benchmarks.house [FOLDER …]` prints one column a folder, so that before stands beside after.
 
 Read from syntax trees: modules (median and largest, in lines), functions (95th percentile and largest: lines, arguments, cyclomatic complexity as McCabe
 counts it, 1 + branches), circles (groups of modules that reach one another by imports, late ones within functions too),

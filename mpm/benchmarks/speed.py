@@ -1,4 +1,4 @@
-"""The table of speed: `python -m mpm.study.speed --peers FOLDER --python PYTHON`, beside the programs of other MPM codes on the same scene.
+"""The table of speed: `python -m mpm.benchmarks.speed --peers FOLDER --python PYTHON`, beside the programs of other MPM codes on the same scene.
 
 FOLDER holds peer_taichi.py and peer_warp.py (same options and JSON line as `mpm bench`), PYTHON is an interpreter that has them. Whole processes, pinned to
 one core, in turn (ours, Taichi tuned, Warp), ROUNDS times; ratios of medians of the median step; `check` must agree. Without --peers: our own rows only.
@@ -128,8 +128,8 @@ def grown() -> str:
 
 
 def model(*what: str) -> dict:
-    """A line of mpm.study.speed_models, on one core."""
-    return line([sys.executable, "-m", "mpm.study.speed_models", *what])
+    """A line of mpm.benchmarks.speed_models, on one core."""
+    return line([sys.executable, "-m", "mpm.benchmarks.speed_models", *what])
 
 
 def whole_step() -> str:

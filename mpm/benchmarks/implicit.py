@@ -1,4 +1,4 @@
-"""Implicit mechanics beside explicit steps, error against time: `python -m mpm.study.implicit [--most SECONDS]`, a table and a picture in docs.
+"""Implicit mechanics beside explicit steps, error against time: `python -m mpm.benchmarks.implicit [--most SECONDS]`, a table and a picture in docs.
 
 Three scenes at one cell each, so that what is seen is the step's error: the loaf and the viscous disc against implicit steps of FINE of the run, the viscous
 column against the stack of material points that it is. Explicit steps at the real time and with time scaled by 50 and 500; what would take longer than
