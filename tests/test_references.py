@@ -10,7 +10,7 @@ ROOMS = ("mpm", "cli", "tests", "configs", "docs")
 KINDS = (".py", ".yaml", ".md", ".toml", ".cff")
 FILES = sorted(path for path in [*ROOT.glob("*"), *(path for room in ROOMS for path in (ROOT / room).rglob("*"))] if path.suffix in KINDS)
 FILES = [path for path in FILES if path not in (Path(__file__), ROOT / "tests/docs/test_build.py")]  # their examples dangle on purpose
-WRITERS = {f"mpm/study/{name}.py": "configs/verification" for name in ("single", "surfaces", "verification")}  # their text goes into that folder
+WRITERS = {f"mpm/benchmarks/{name}.py": "configs/verification" for name in ("single", "surfaces", "verification")}  # their text goes into that folder
 WRITERS["mpm/reference/pages.py"] = "docs"
 WRITERS["tests/docs/test_gallery.py"] = "docs"
 
