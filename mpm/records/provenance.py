@@ -14,7 +14,7 @@ from pathlib import Path
 from mpm import fingerprint
 
 ROOT = Path(__file__).resolve().parents[1]
-CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "plots", "opened", "exports", "movies", "reports"}
+CANNOT_CHANGE_A_NUMBER = {"records", "sweep", "study", "benchmarks", "plots", "opened", "exports", "movies", "reports"}
 PACKAGES = ("mpm", "numpy", "numba", "llvmlite", "scipy", "h5py", "h5netcdf", "xarray")
 
 
