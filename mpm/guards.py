@@ -70,7 +70,7 @@ class Guards:
         for b, c in np.argwhere(links > 0):
             one, other = self.data[b], self.data[c]
             one.low, one.high = min(one.low, other.low), max(one.high, other.high)
-            one.heats, one.flux = one.heats or other.heats, one.flux or other.flux
+            one.heats, one.cools, one.warms = one.heats or other.heats, one.cools or other.cools, one.warms or other.warms
 
     def block(self, scene, clock) -> Outcome:
         """Before a block of steps: temperatures. All else is looked at as the block opens (integrate/state_check.py)."""
@@ -160,7 +160,7 @@ class Data:
             return
         theta = body.thermal.theta
         self.heats = not (isinstance(body.source, NoSource | Load) and isinstance(body.heating, NoHeating))
-        self.flux = any(act.flux != 0 for act in around.acts) if isinstance(around, Surroundings) else False
+        self.cools = self.warms = False  # by a flux, which knows no bound that way
         self.low, self.high = float(np.min(theta)), float(np.max(theta))
 
     def meet(self, body) -> None:
@@ -168,6 +168,7 @@ class Data:
         surface = body.surface
         if isinstance(surface, NoExchange) or (self.lasting and self.seen):
             return
+        self.cools, self.warms = self.cools or bool(surface.flux.min(initial=0.0) < 0), self.warms or bool(surface.flux.max(initial=0.0) > 0)
         acting = surface.beta > 0
         self.seen = bool(acting.any())
         for seen in (surface.outside[acting], (surface.outside + surface.drift)[acting]):
@@ -184,16 +185,18 @@ class Data:
         least, most = span(thermal.theta)
         if not least > -thermal.zero:
             return MAX_PRINCIPLE, int(np.argmin(thermal.theta)), f"{thermal.zero + least:.4g} K, below absolute zero"
-        if self.heats or self.flux:
+        if self.heats:
             return None
         self.meet(body)
         scale = 1e-6 * max(abs(thermal.zero), 1.0)
-        self.over = max(self.over, (max(most - self.high, self.low - least) - scale) / max(self.high - self.low, scale))
-        over = self.allowed * (self.high - self.low) + scale
+        above, below = 0.0 if self.warms else most - self.high, 0.0 if self.cools else self.low - least
+        wide = max(self.high, most if self.warms else -math.inf) - min(self.low, least if self.cools else math.inf)
+        self.over = max(self.over, (max(above, below) - scale) / max(wide, scale))
+        over = self.allowed * wide + scale
         bounds = f"beyond {thermal.zero + self.low:.5g} to {thermal.zero + self.high:.5g} K"
-        if most > self.high + over:
+        if above > over:
             return MAX_PRINCIPLE, int(np.argmax(thermal.theta)), f"{thermal.zero + most:.5g} K, {bounds}"
-        if least < self.low - over:
+        if below > over:
             return MAX_PRINCIPLE, int(np.argmin(thermal.theta)), f"{thermal.zero + least:.5g} K, {bounds}"
         return None
 

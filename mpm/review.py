@@ -6,7 +6,7 @@ heat      heat content and heat taken in disagree by more than HEAT of the large
           APIC is 0.09, 0.02, 0.005 % off (configs/verification/robin_slab_particles.yaml --set method.temperature=xpic)
 depth     heat that a surface exchanges reaches less than DEPTH cells deep, where the body resists (beta depth/kappa over RESISTS). Against a half space
           bodies that move take in 10 % too much at 1 cell, 39 % at 0.5, 122 % at 0.25 (1-D, beta depth/kappa = 1.25, 2.5, 5); those that do not 2 % too
-          little at 0.25 and three times too much at 0.12. With kappa towards 0 both take in what a layer of a cell does
+          little at 0.25 and three times too much at 0.12. With kappa towards 0 both take in what a layer of a cell does, and that layer takes a given flux
 energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads. It shows in the answer: slump.yaml
           loses 15 % at one of its points with `transfer: apic`, 10 % with affine FLIP, and spreads 0.109 and 0.123 mm
 thin      a body, or all material, is less than THIN cells across
@@ -117,18 +117,20 @@ def held(experiment: Any) -> Iterator[str]:
 
 
 def depth(experiment: Any, run: Run) -> Iterator[str]:
-    """sqrt(kappa t/(rho alpha)) against the cell, where the surface, not the air, resists: beta depth > kappa/2."""
+    """sqrt(kappa t/(rho alpha)) against the cell, where the surface, not the air, resists, or a flux is given."""
     if experiment.grid.dimension == 0:
         return
     for name, body in experiment.bodies.items():
         material, h = experiment.materials[body.material], experiment.grid.cell
-        if material.heat is None or not (beta := exchanged(experiment, name)):
+        beta, given = exchanged(experiment, name), any(programme(one.flux.q) for one in experiment.surfaces if one.of == name and one.flux is not None)
+        if material.heat is None or not (beta or given):
             continue
         seen = {body.temperature, *(float(run.series[at][-1]) for at in ("temperature_min", "temperature_max") if at in run.series)}
         kappa = max(value(law(material.heat.kappa), T) for T in seen)
         deep = float(np.sqrt(kappa * run.times[-1] / (material.density * value(law(material.heat.alpha), body.temperature))))
-        if deep < DEPTH[experiment.moving] * h * (1 - 1e-9) and beta * deep > RESISTS * kappa:
-            yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and what is exchanged is that of a layer of about a cell"
+        if deep < DEPTH[experiment.moving] * h * (1 - 1e-9) and (given or beta * deep > RESISTS * kappa):
+            what = "what is exchanged is that" if beta else "temperatures beside its surface are those"
+            yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and {what} of a layer of about a cell"
 
 
 def turned_over(series: dict[str, np.ndarray]) -> float:

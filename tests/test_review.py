@@ -112,6 +112,20 @@ def test_heat_that_reaches_less_than_a_quarter_of_a_cell_is_told(kappa):
     assert (off > 0.1) == (kappa <= 5e-4)
 
 
+@pytest.mark.parametrize("kappa", [0.05, 1e-2, 1e-3, 1e-4, 1e-9, 0.0])
+def test_a_flux_that_stays_within_a_layer_of_a_cell_is_told(kappa):
+    """The face of a half space is 2 q sqrt(t/(pi kappa rho alpha)) warmer (Carslaw & Jaeger 2.9): what is off by more than 3 % has a warning."""
+    data = {
+        "grid": {"dimension": 1, "size": [0.02], "cell": 0.001}, "time": {"end": 60.0}, "output": {"every": 10.0, "observables": ["temperature.max"]},
+        "bodies": {"s": {"shape": {"box": {"lower": [0.005], "upper": [0.015]}}, "temperature": 293.15, "material": "d"}},
+        "materials": {"d": {"density": 1000.0, "heat": {"fourier": {"kappa": kappa, "alpha": 2000.0}}}},
+        "surfaces": [{"of": "s", "side": "left", "flux": {"q": 500.0}}],
+    }  # fmt: skip
+    run = mpm.run_point(mpm.load(data))
+    off = abs((run.finals["temperature_max"] - 293.15) / (1000.0 * np.sqrt(60 / (np.pi * max(kappa, 1e-30) * 2e6))) - 1)
+    assert run.outcome.ok and ("depth" in kinds(run.facts.get("warnings", ()))) == (kappa <= 1e-3) and (kappa <= 1e-3 or off < 0.03)
+
+
 @pytest.mark.parametrize("D", [1, 2])
 @pytest.mark.parametrize(("gap", "told"), [(0.0, False), (0.02, False), (0.4, True), (0.95, True), (1.0, False), (3.0, False)])
 def test_bodies_that_lie_less_than_a_cell_apart_are_told(gap, told, D):

@@ -14,6 +14,7 @@ from pydantic_core import core_schema
 from mpm.config.base import problem
 
 INFINITE = {"inf", ".inf", "infinity"}
+SCALE = 1e40  # products of seven such numbers are still numbers, and nothing that is measured lies beyond it or below its inverse
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,8 @@ class Quantity:
         if number <= self.above or number < self.least or number > self.most:
             hint = f'"{value:g} degC"' if self.unit == "K" and not self.difference and number > -273.15 else ""
             raise problem("quantity", f"the {self.name} is out of range", self.wanted, suggestion=hint)
+        if number and not 1 / SCALE <= abs(number) <= (math.inf if self.infinite else SCALE):
+            raise problem("quantity", f"the {self.name} is out of all scale", f"{'0, or ' * (self.above < 0)}{1 / SCALE:g} to {SCALE:g} [{self.unit or 1}]")
         return number + 0.0  # -0.0 and 0.0 are one value, and so one run
 
     def read(self, text: str) -> float:

@@ -91,13 +91,14 @@ def content(system: System, zero: float, reference: float) -> float:
 
 
 def beyond(part: Part) -> list[float]:
-    """How far each body's temperatures leave the bounds of the data, as a share of the range."""
+    """How far each body's temperatures leave the bounds of the data, as a share of the range: beside a flux, which has no bound, of what was reached."""
     system, trace = part.system, part.trace
     (low, high), n = system.bounds, len(part.members)
     most = np.reshape(trace.most, (-1, n)).max(axis=0, initial=-np.inf)
     least = np.reshape(trace.least, (-1, n)).min(axis=0, initial=np.inf)
     worst = np.maximum(np.maximum(system.zero + most - high, low - system.zero - least), 0.0)
-    return [float(over / system.span) if over > 1e-9 * system.hottest else 0.0 for over in worst]
+    span = system.span if np.isfinite(high - low) else min(system.span, max(float(most.max() - least.min()), 1e-6 * system.hottest))
+    return [float(over / span) if over > 1e-9 * system.hottest else 0.0 for over in worst]
 
 
 def told(part: Part, shown: int, reference: float) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:

@@ -12,7 +12,7 @@ from mpm.materials.laws import Constant
 from mpm.outcome import COMPLETED, MAX_PRINCIPLE
 from mpm.rigid.bounded import BoundedSteps
 from mpm.rigid.chebyshev import ChebyshevSteps
-from mpm.rigid.gather import Part, Seat, gather
+from mpm.rigid.gather import Part, Seat, beyond, gather
 from mpm.rigid.group import Group, groups, make_group
 from mpm.rigid.joined import JoinedLinear, JoinedNewton
 from mpm.rigid.linear import LinearSteps
@@ -92,12 +92,16 @@ def ways(bodies: list[RigidBody], method: Method) -> list[Method]:
     return [last] if isinstance(kappa, Constant) and kappa.constant == 0 else [method, last]
 
 
-def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float]:
-    """Temperatures less zero that end an attempt: MOST of the range beyond the data and absolute zero; in an attempt that is not the last one CORNERS where
-    steps of constant laws are chosen by their error (then only the consistent mass overshoots, at corners in the first moments), else NOTICEABLE.
+def share(steps, fixed: bool) -> float:
+    """Of the range, beyond the data, that an attempt may come to where there is another: CORNERS where steps of constant laws are chosen by their error
+    (then only the consistent mass overshoots, at corners in the first moments), else NOTICEABLE.
     """
-    share = MOST if last else CORNERS if isinstance(steps, LinearSteps) and not fixed else NOTICEABLE
-    slack = max(share * system.span, 1e-9 * system.hottest)
+    return CORNERS if isinstance(steps, LinearSteps) and not fixed else NOTICEABLE
+
+
+def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float]:
+    """Temperatures less zero that end an attempt: MOST of the range beyond the data and absolute zero; `share` of it in one that is not the last."""
+    slack = max((MOST if last else share(steps, fixed)) * system.span, 1e-9 * system.hottest)
     low, high = (bound - system.zero for bound in system.bounds)
     ground = -system.zero if system.bounds[0] != 0.0 else -np.inf  # data without a unit, from 1 to 0, say nothing of absolute zero
     return max(low - slack, ground), high + slack
@@ -179,9 +183,10 @@ def solve(
             watch = Watch(times, joined(rows), levels, system.geometry.sight, shots, beat, inner, reach, told, jumps, enter)
             trace = done or drive(steps, watch, float(end), system.geometry.volume, way.step, cut)
             trace.again, cut = again, None
-            if trace.code != MAX_PRINCIPLE:
+            part = Part(members, seats, system, steps, trace, np.array(mine, dtype=int))
+            if trace.code != MAX_PRINCIPLE and (last or trace.code != COMPLETED or max(beyond(part)) <= share(steps, way.step is not None)):
                 break
-        parts.append(Part(members, seats, system, steps, trace, np.array(mine, dtype=int)))
+        parts.append(part)
         at = np.concatenate([np.flatnonzero(inside[b]) for b in members])
         seen[: len(trace.shots), at] = system.zero + np.array(trace.shots).reshape(len(trace.shots), len(at))
         if trace.code != COMPLETED:

@@ -161,8 +161,9 @@ def begun(method, watch: Watch, ahead, weight) -> tuple:
 
 
 def planned(method, left: float, fixed: float | None) -> tuple[int, float]:
-    """How many steps to what is ahead, and their size, to begin with."""
-    count = max(1, math.ceil(left / (fixed or min(method.first_size(left), method.longest)) * (1 - 1e-9)))
+    """How many steps to what is ahead, and their size, to begin with; at most as many as may be tried."""
+    size = fixed or min(method.first_size(left), method.longest)
+    count = max(1, math.ceil(left / max(size, FEWEST * left) * (1 - 1e-9)))
     return count, left / count
 
 

@@ -15,7 +15,9 @@ from mpm.sweep.cases import plan
         ("fine", "grid.cell", "10 um", "there would be about 4.1e+09 particles, and at most 1 000 000 000 are possible", "above 2e-05 [m]"),
         ("block", "time.step", 1e-15, "the run would take 1e+14 steps", "at least 1e-13 [s], or auto"),
         ("block", "method.heat_step", "1e-30 s", "the run would take 1e+29 steps", "at least 1e-13 [s], or auto"),
-        ("block", "time.end", 1e300, None, None),
+        ("block", "time.end", 1e30, None, None),
+        ("block", "time.end", 1e300, "the time is out of all scale", "1e-40 to 1e+40 [s]"),
+        ("loaf", "materials.dough.density", 1e-300, "the density is out of all scale", "1e-40 to 1e+40 [kg/m**3]"),
     ],
 )
 def test_sizes(scene, path, value, message, allowed, request):

@@ -6,6 +6,7 @@ import pytest
 from mpm.materials.laws import Bump
 from mpm.records.checkpoint import pack, unpack
 from mpm.rigid import Method, RigidBody, solve
+from mpm.rigid.run import NOTICEABLE
 from mpm.scene import Ball, Box
 
 INF = float("inf")
@@ -81,6 +82,18 @@ def test_a_flux_without_conduction(q):
     assert run.outcome.ok and run.series["temperature.mean"][-1] - 293.15 == pytest.approx(rise, rel=1e-9)
     still = run.series["temperature.min" if q > 0 else "temperature.max"]
     np.testing.assert_allclose(still, 293.15, atol=1e-9)
+
+
+@pytest.mark.parametrize("q", [500.0, -50.0])
+@pytest.mark.parametrize(("kappa", "told"), [(0.5, False), (1e-2, False), (1e-3, True), (1e-9, True)])
+def test_a_flux_bounds_on_its_other_side(q, kappa, told):
+    """What only takes in heat becomes no colder than it was: the share is of what was reached, not of what a flux without conduction would lead to."""
+    body = RigidBody(Box((0.005,), (0.015,)), 300.0, 1000.0, kappa, 2000.0, fluxes=(("left", q),))
+    run = solve([body], 1, 1e-3, end=60.0, times=np.linspace(0, 60, 11))
+    least, most = run.series["temperature.min"].min(), run.series["temperature.max"].max()
+    over = max(300.0 - least, 0.0) if q > 0 else max(most - 300.0, 0.0)
+    assert run.facts["beyond"][0] == pytest.approx(over / (most - least), rel=1e-6, abs=1e-7)
+    assert (run.facts["beyond"][0] > NOTICEABLE) == told and run.series["temperature.mean"][-1] == pytest.approx(300.0 + q * 60 / 2e4, rel=1e-9)
 
 
 def test_a_run_says_what_leaves_its_data():
