@@ -169,14 +169,14 @@ def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
 
 def covered(side: str, dimension: Any) -> set[str]:
     """The sides that a side's name stands for."""
-    every = {*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension in (3, "axisymmetric") else set())
+    every = ({*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension in (3, "axisymmetric") else set())) or {"all"}
     return every if side == "all" else every - {"bottom", "top"} if side == "lateral" else {side}
 
 
 def surface_twice(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
-    """One exchange of a kind on a side; a fixed temperature is a convection of infinite beta. All exchanges of a material point add up."""
+    """One exchange of a kind on a side; a fixed temperature is a convection of infinite beta."""
     dimension = experiment.grid.dimension
-    for kind in EXCHANGES if dimension != 0 else ():
+    for kind in EXCHANGES:
         alike = ("convection", "fixed") if kind in ("convection", "fixed") else (kind,)
         for before in range(index + (kind == "fixed")):
             other = experiment.surfaces[before]

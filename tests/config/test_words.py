@@ -92,8 +92,17 @@ def test_a_side_has_one_convection(told, second):
     assert line == 9 and path.startswith("surfaces.1.") and message == "'s' has a convection there already, from surfaces.0 (side all)"
 
 
+def test_a_material_point_has_one_surface(told):
+    """Two convections on it would silently be their sum."""
+    text = slab().replace("dimension: 1, size: [20 mm], cell: 1 mm", "dimension: 0").replace("probes: {c: [6 mm]}, ", "")
+    text = text.replace("box: {lower: [5 mm], upper: [15 mm]}", "point: {surface_to_volume: 200}")
+    assert told(text) == []
+    ((_, _, path, message),) = told(text.replace("time: {", "  - {of: s, convection: {beta: 50, outside: 100 degC}}\ntime: {"))
+    assert path == "surfaces.1.convection" and message == "'s' has a convection there already, from surfaces.0 (side all)"
+
+
 def test_other_exchanges_and_other_sides_are_no_conflict(told):
-    """Convection and radiation act together; sides that do not overlap are apart; all exchanges of a material point add up."""
+    """Convection and radiation act together; sides that do not overlap are apart."""
     more = "  - {of: s, side: left, radiation: {emissivity: 0.9, surroundings: 500}}\n  - {of: s, flux: {q: 10}}\n"
     assert told(slab().replace("time: {", f"{more}time: {{")) == []
     sides = slab().replace("{of: s, conv", "{of: s, side: left, conv")
