@@ -16,6 +16,7 @@ Further files
     examples          an example of every key
     fit               what is fitted
     formula           A formula of one variable x, for lines of theory
+    headers           the header of such a file
     loading           what is prescribed to a material point
     loads             forces on the surface of a body that moves, and a drag that brings it to rest
     measured          measured curves

@@ -1,16 +1,17 @@
 """Curves in CSV files as laboratories and bakers write them: named columns, units in the header, clock times, decimal commas, lines before the header.
 
-Header      the first line with the columns that are asked for (lines before it are passed over: the exports of wireless probes have nine); # begins a comment
-Fields      between commas, semicolons or tabs, whichever the header has; where it is not the comma, a comma in a number is its decimal sign
+Header      see `headers`; lines before it are passed over (the exports of wireless probes have nine); # begins a comment
+Fields      between commas, semicolons or tabs, whichever the header has. A comma within a number is its decimal sign; between commas such a number stands in
+            quotes, and three digits behind the comma (1,000) are refused there, as they may be thousands
 Time        a column called second, minute, hour (or s, min, h, time, timestamp, elapsed, with a unit in brackets or behind _), or the one that is named;
-            numbers, clock times (12:30, 12:30:05, 1:30 PM; minutes and seconds under [mm:ss]), or dates with one (2026-05-01 12:30:05, 01.05.2026 12:30), which
-            count from the first row or from `start`. Without dates, a clock that goes back by half a day or more has passed midnight. A probe's export counts
-            seconds
-Value       its unit stands behind the last _ or in brackets, or is given; temperatures of a probe's export are in degC
-Rows may stand in any order of time; they are kept by rising time. Everything else that is not plain is refused with its line.
+            numbers, minutes and seconds (12:30 under [mm:ss] and in columns of minutes), clock times (12:30, 12:30:05, 1:30 PM), or dates with one
+            (2026-05-01 12:30:05, 01.05.2026 12:30, 5/1/2026 12:30 PM). Clock times count from the first row or from `start`; without dates, a clock that goes
+            back by half a day or more has passed midnight. A probe's export counts seconds
+Value       its unit stands in the header, or is given; temperatures of a probe's export are in degC
+Rows may stand in any order of time; they are kept by rising time. A row that has neither time nor value is passed over: another curve of the file is longer.
+Everything else that is not plain is refused with its line.
 """
 
-import csv
 import datetime
 import math
 import os
@@ -19,26 +20,17 @@ import stat
 from pathlib import Path
 from typing import Any
 
+from mpm.config.headers import DAYS, SHORT, TIMES, Unreadable, fields, header, is_export, seconds_of, unit_of, units_of, with_units
 from mpm.config.problems import brief, listed
 
-SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0}
-LIKE_TIME = re.compile(r"(?:time|timestamp|elapsed|t|zeit|clock)?\W*_?(?:time)?", re.IGNORECASE)
-TIMES = {"second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "minute": 60.0, "minutes": 60.0, "min": 60.0, "hour": 3600.0, "hours": 3600.0, "h": 3600.0,
-         "ms": 1e-3, "day": 86400.0, "days": 86400.0, "d": 86400.0}  # fmt: skip
-CLOCK = re.compile(r"(?:(?P<date>\d{4}-\d{2}-\d{2}|\d{1,2}\.\d{1,2}\.\d{4}),?[T ]\s*)?(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d+)?))?"
-                   r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?(?P<zone>Z|[+-]\d{2}:?\d{2})?")  # fmt: skip
-DEGREES = {"c": "degC", "celsius": "degC", "deg c": "degC", "f": "degF", "fahrenheit": "degF", "deg f": "degF"}  # as people write them in a header
+DATE = r"(?:(?P<date>\d{4}[-/]\d{2}[-/]\d{2}|\d{1,2}[./]\d{1,2}[./](?:\d{4}|\d{2})),?[T ]\s*)?"
+CLOCK = re.compile(DATE + r"(?P<hour>\d{1,3}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d+)?))?(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
+                   r"(?P<zone>Z|[+-]\d{2}:?\d{2})?")  # fmt: skip
+SLASHED = re.compile(r"(\d{1,2})/(\d{1,2})/\d{2,4}\b")
+DEGREES = {f"{word}{unit}": f"deg{unit.upper()}" for unit in "cf" for word in ("", "deg ", "deg. ", "degree ", "degrees ")}  # as people write them in a header
+DEGREES |= {"celsius": "degC", "fahrenheit": "degF", "degrees celsius": "degC", "degrees fahrenheit": "degF"}
 LETTERS = set("°µ²³äöüÄÖÜßéèàç".encode("cp1252"))  # of files that a spreadsheet wrote in Windows-1252
-MOST_BYTES, MOST_ROWS, MOST_BEFORE = 64 * 2**20, 100_000, 30  # of a file; of its curve, which every point carries; lines before the header
-EXPORT = "Combustion Inc"  # begins the export of a wireless eight-sensor probe
-
-
-class Unreadable(ValueError):
-    """What is wrong with a file, and what would be right. `column`: the key of the config that names it, where it is a column's name that is wrong."""
-
-    def __init__(self, line: int, message: str, allowed: Any = "", column: str = "file"):
-        super().__init__(f"line {line}: {message}" if line else message)
-        self.line, self.message, self.allowed, self.column = line, message, allowed, column
+MOST_BYTES, MOST_ROWS = 64 * 2**20, 100_000  # of a file; of its curve, which every point carries
 
 
 def content(path: Path) -> str:
@@ -58,68 +50,32 @@ def content(path: Path) -> str:
         raise Unreadable(raw.count(b"\n", 0, error.start) + 1, f"this is not UTF-8 text (byte 0x{raw[error.start]:02x})", "a CSV file in UTF-8") from None
 
 
-def fields(number: int, line: str, sign: str) -> list[str]:
-    """The fields of one line."""
-    try:
-        return [field.strip() for field in next(csv.reader([line], strict=True, delimiter=sign))]
-    except csv.Error as error:
-        raise Unreadable(number, f"this is not CSV: {error}", "fields between commas, each row on a line of its own") from None
-
-
-def unit_of(name: str) -> str:
-    """The unit that a header tells: in brackets, or behind the last _; empty where there is neither."""
-    if found := re.search(r"[\[(]([^\])]+)[\])]\s*$", name):
-        return found[1].strip()
-    return name.rpartition("_")[2] if "_" in name else ""
-
-
-def seconds_of(name: str) -> float | None:
-    """How many seconds one in a column of this name is; NaN where its name says time and no unit; None where it says no time."""
-    if name.lower() in TIMES:
-        return TIMES[name.lower()]
-    unit = unit_of(name)
-    if re.fullmatch(r"(h+:)?m+:s+|h+:m+", unit.lower()):
-        return math.nan
-    stem = re.sub(r"[\[(][^\])]*[\])]\s*$", "", name) if not name.rstrip().endswith(unit) else name.removesuffix(unit)
-    if unit.lower() in TIMES and LIKE_TIME.fullmatch(stem.strip(" _") or ""):
-        return TIMES[unit.lower()]
-    return math.nan if re.fullmatch(r"time|timestamp|elapsed|clock|zeit", name, re.IGNORECASE) else None
-
-
-def header(lines: list[tuple[int, str]], time: str, value: str) -> tuple[int, list[str], str]:
-    """(place among the lines, names of the columns, sign between fields) of the first line that has the columns, else of the first line."""
-    first = None
-    for place, (number, line) in enumerate(lines[: MOST_BEFORE + 1]):
-        for sign in ",;\t":
-            if place and line.count(sign) == 0:
-                continue
-            names = fields(number, line, sign) if not place or value in line else []
-            first = first or (place, names, sign)
-            if value in names and (not time or time in names):
-                return place, names, sign
-    return first
-
-
 def read(path: Path, time: str, value: str, units: str, unit: str = "", start: Any = None, sigma: str = "") -> list[tuple[float, ...]]:
     """(second, value in `units`[, sigma]) of every row, by rising time; Unreadable for what is wrong, and where."""
     text = content(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     lines = [(number, line) for number, line in enumerate(text, 1) if line.strip() and not line.startswith("#")]
     if not lines:
         raise Unreadable(1, "the file is empty", "a header and rows of numbers")
+    if commented := [(number, line.lstrip("# ")) for number, line in enumerate(text[: lines[0][0]], 1) if line.startswith("#")]:
+        lines = lines if re.match(r"\D*[^\d\W]", lines[0][1]) else [commented[-1], *lines]  # numbers at once: the last comment is the header
     place, names, sign = header(lines, time, value)
-    head, probe = lines[place][0], lines[0][1].startswith(EXPORT)
+    head, probe = lines[place][0], is_export(lines[0][1], names)
     named, time = bool(time), time or next((name for name in names if seconds_of(name) is not None), "")
-    scale = seconds_of(time) if time in names else None
+    told = with_units(names, fields(*lines[place + 1], sign)) if place + 1 < len(lines) else None  # a row of units below the names
+    place, full = (place, dict(zip(names, names, strict=True))) if told is None else (place + 1, dict(zip(names, told, strict=True)))
+    if told is not None and not time:
+        time = next((name for name in names if seconds_of(full[name]) is not None), "")
+    scale = seconds_of(full[time]) if time in names else None
     if scale is None and named and time in names:  # whoever names a column knows that it is the time
         scale = TIMES.get(unit_of(time).lower(), math.nan)
-    others = [name for name in names if name and seconds_of(name) is None and name != sigma]
+    others = [name for name in names if name and seconds_of(full[name]) is None and name != sigma and not DAYS.fullmatch(name)]
     value = value or (others[0] if len(others) == 1 else "")
     if value not in names:
         said = f"no such column: {value!r}" if value else "which column is it? Name it by `value`"
-        raise Unreadable(head, said, [n for n in names if seconds_of(n) is None] or listed(names), "value")
+        raise Unreadable(head, said, others or listed(names), "value")
     if time not in names or scale is None:
         right = [n for n in names if seconds_of(n) is not None]
-        raise Unreadable(head, f"no such column: {time!r}", right or f"a column named {', '.join(SECONDS)}; here are {brief(listed(names))}", "time")
+        raise Unreadable(head, f"no such column: {time!r}", right or f"a column named {'second, minute, hour'}; here are {brief(listed(names))}", "time")
     if sigma and sigma not in names:
         raise Unreadable(head, f"no such column: {sigma!r}", names, "sigma")
     for key, name in (("value", value), ("time", time), ("sigma", sigma)):
@@ -130,11 +86,16 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
         raise Unreadable(head + 1, "no rows follow the header", "a row for each measurement")
     if len(rows) > MOST_ROWS:
         raise Unreadable(rows[MOST_ROWS][0], f"more than {MOST_ROWS} rows", "fewer: every point of a sweep carries the curve; keep every tenth row, say")
-    line = Line(head, names, sign, names.index(time), names.index(value), names.index(sigma) if sigma else None)
+    line = Line(names, full[time], sign, names.index(time), names.index(value), names.index(sigma) if sigma else None)
     line.scale = 1.0 if probe and math.isnan(scale) else scale
-    line.convert = conversion(head, value, units, unit or ("degC" if probe and not unit_of(value) else ""), "value")
-    line.error = conversion(head, sigma, units, "", "sigma", difference=True) if sigma else None
-    found = [line.numbers(number, fields(number, row, sign)) for number, row in rows]
+    line.convert = conversion(head, full[value], units, unit or ("degC" if probe and not unit_of(full[value]) else ""), "value")
+    line.error = conversion(head, full[sigma], units, "", "sigma", unit or unit_of(full[value])) if sigma else None
+    split = [(number, line.whole(number, fields(number, row, sign))) for number, row in rows]
+    rows = [(number, row) for number, row in split if row[line.at[0]] or row[line.at[1]]]
+    if not rows:
+        raise Unreadable(head + 1, "no row has a time and a value", "a row for each measurement")
+    line.day_first = day_first([(number, row[line.at[0]]) for number, row in rows])
+    found = [line.numbers(number, row) for number, row in rows]
     origin = line.origin(start, min(second for second, *_ in found)) if line.clock or start is not None or probe else 0.0
     shifted = [(number, (row[0] - origin, *row[1:])) for (number, _), row in zip(rows, found, strict=True)]
     kept = [(number, row) for number, row in shifted if row[0] >= 0 or start is None]
@@ -150,20 +111,41 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
     return sorted((row for _, row in kept), key=lambda row: row[0])
 
 
-class Line:
-    """How one row becomes numbers."""
+def day_first(rows: list[tuple[int, str]]) -> bool:
+    """Whether dates between strokes are day/month/year, as one of them must tell; where all are of one day it does not matter."""
+    found = [(number, match) for number, text in rows if (match := SLASHED.match(text))]
+    if any(int(match[1]) > 12 for _, match in found):
+        return True
+    if len({match[0] for _, match in found}) > 1 and not any(int(match[2]) > 12 for _, match in found):
+        number, match = next((number, match) for number, match in found if match[0] != found[0][1][0])
+        raise Unreadable(number, f"{match[0]} may be two days, and dates of this column differ", "2026-05-01 12:30, or 01.05.2026 12:30")
+    return False
 
-    def __init__(self, head: int, names: list[str], sign: str, time: int, value: int, sigma: int | None):
-        self.head, self.names, self.sign, self.at = head, names, sign, (time, value, sigma)
+
+class Line:
+    """How one row becomes numbers. `time`: the name of its column with its unit."""
+
+    day_first = False
+
+    def __init__(self, names: list[str], full: str, sign: str, time: int, value: int, sigma: int | None):
+        self.names, self.sign, self.at = names, sign, (time, value, sigma)
         self.clock = False  # whether a clock time was seen
         self.days, self.last = 0, None  # of clock times without a date
-        self.short = re.fullmatch(r"m+:s+", unit_of(names[time]).lower()) is not None
+        self.short = SHORT.fullmatch(unit_of(full)) is not None
         self.scale, self.convert, self.error = 1.0, None, None
+
+    def whole(self, number: int, row: list[str]) -> list[str]:
+        """As many fields as the header has; signs at the end of a line count for nothing."""
+        named, filled = self.names, row
+        while filled and len(filled) > len(named) and not filled[-1]:
+            filled = filled[:-1]
+        filled = filled + [""] * sum(not name for name in named[len(filled) :])
+        if len(filled) != len(named):
+            raise Unreadable(number, f"{len(row)} fields under a header of {len(named)}", "as many fields as the header has")
+        return filled
 
     def numbers(self, number: int, row: list[str]) -> tuple[float, ...]:
         """(second, value[, sigma]) of one row."""
-        if len(row) != len(self.names):
-            raise Unreadable(number, f"{len(row)} fields under a header of {len(self.names)}", "as many fields as the header has")
         time, value, sigma = self.at
         found = (self.second(number, row[time]), self.convert(self.figure(number, row[value], self.names[value])))
         return found if sigma is None else (*found, self.error(self.figure(number, row[sigma], self.names[sigma])))
@@ -179,13 +161,13 @@ class Line:
 
     def clock_time(self, number: int, text: str, match: Any) -> float:
         """A clock time in seconds; one without a date that goes back by half a day or more is of the next day."""
-        self.clock = True
         hour, minute, second = int(match["hour"]), int(match["minute"]), float((match["second"] or "0").replace(",", "."))
-        if self.short and match["second"] is None:
-            return hour * 60.0 + minute  # mm:ss
-        date = "-".join(part.zfill(2) for part in reversed((match["date"] or "").split(".")) if part)
+        date = match["date"]
+        if minute <= 59 and not date and not match["half"] and match["second"] is None and (self.short or self.scale == 60.0):
+            return hour * 60.0 + minute  # mm:ss since the start
+        self.clock = True
         try:
-            days = datetime.date.fromisoformat(date).toordinal() if date else self.days
+            days = self.day(date).toordinal() if date else self.days
         except ValueError as error:
             raise Unreadable(number, f"{brief(text)} is no date: {error}", "2026-05-01 12:30:05, or 01.05.2026 12:30:05") from None
         if minute > 59 or second >= 60 or ((date or match["half"]) and hour > (12 if match["half"] else 23)):  # alone, it may be a stop watch
@@ -200,6 +182,15 @@ class Line:
                 self.days = days = days + 1
             self.last = moment
         return days * 86400.0 + moment - away
+
+    def day(self, text: str) -> datetime.date:
+        """2026-05-01, 01.05.2026, 1.5.26, or 5/1/2026 and 1/5/2026 as the column tells."""
+        first, second, third = re.split(r"[-./]", text)
+        if len(first) == 4:
+            return datetime.date(int(first), int(second), int(third))
+        if "/" in text and not self.day_first:
+            first, second = second, first
+        return datetime.date(int(third) + 2000 * (len(third) == 2), int(second), int(first))
 
     def origin(self, start: Any, first: float) -> float:
         """The second of the column at which the run begins."""
@@ -216,33 +207,42 @@ class Line:
 
     def figure(self, number: int, text: str, name: str) -> float:
         """One number."""
-        plain = text.replace(",", ".") if self.sign != "," and text.count(",") == 1 and "." not in text else text
+        plain = text.replace("\N{MINUS SIGN}", "-")
+        thousands = self.sign == "," and re.fullmatch(r"-?\d{1,3},\d{3}", plain)  # or not: 1,000
+        plain = plain.replace(",", ".") if plain.count(",") == 1 and "." not in plain and not thousands else plain
         try:
             found = math.nan if "_" in text else float(plain)
         except ValueError:
             found = math.nan
         if not math.isfinite(found):
-            twice = self.sign == "," and re.fullmatch(r"-?\d+,\d+", text)  # 20,5 or 1,000
-            raise Unreadable(number, f"{name} is no finite number: {brief(text)}", "20.5, or semicolons between the fields" if twice else "a number")
+            allowed = "1000 or 1.000, or semicolons between the fields" if thousands else "a number"
+            raise Unreadable(number, f"{name} is no finite number: {brief(text)}", allowed)
         return found
 
 
-def conversion(head: int, name: str, units: str, given: str, key: str, difference: bool = False) -> Any:
-    """From numbers of a column to SI: a function of one number."""
+def conversion(head: int, name: str, units: str, given: str, key: str, like: str | None = None) -> Any:
+    """From numbers of a column to SI: a function of one number. `like`: the unit of the values that these are standard errors of."""
     from mpm.config.units import UnitError, convert
 
-    unit = given or unit_of(name)
-    unit = DEGREES.get(unit.lower().lstrip("°"), unit) if units == "K" else unit
-    if not unit and units != "1":
+    difference = like is not None
+    told = [unit for unit in ([given] if given else [*units_of(name), like]) if unit]
+    if not told and units != "1":
         raise Unreadable(head, f"the column {name!r} tells no unit", f"a name that ends in one, as {name}_degC, or `unit: degC`" if units == "K" else
                          f"a name with one of the dimension of {units}, as {name} [{units}], or `unit: {units}`", key)  # fmt: skip
-    try:
-        zero, one = (convert(f"{k} {unit or '1'}", units, "value", difference) for k in (0, 1))
-    except UnitError as error:
+    wrong = None
+    for unit in told or ["1"]:
+        unit = DEGREES.get(unit.lower().replace("°", "", 1).strip(), unit) if units == "K" else unit
+        try:
+            zero, one = (convert(f"{k} {unit}", units, "value", difference) for k in (0, 1))
+            break
+        except UnitError as error:
+            wrong = wrong or error
+    else:
         if units == "1" and not given:
             return lambda number: number
-        words = f"the unit of the column {name!r}: {error}"
-        raise Unreadable(head, words, f"a unit of the dimension of {units}", "unit" if given else key) from None
+        force = ", as gf where a force is told in grams" if units == "N" else ""
+        words = f"the unit of the column {name!r}: {wrong}"
+        raise Unreadable(head, words, f"a unit of the dimension of {units}{force}", "unit" if given else key) from None
     if unit in ("degC", "°C", "K", "kelvin"):  # exact: 20 degC is 20 + 273.15
         return lambda number: number + zero if not difference else number
     return lambda number: number * (one - zero) + zero

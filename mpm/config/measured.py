@@ -11,8 +11,9 @@ from typing import Any
 from pydantic import model_validator
 
 from mpm.config.base import Model, doc
-from mpm.config.curves import Unreadable, read
+from mpm.config.curves import read
 from mpm.config.explain import Finding
+from mpm.config.headers import Unreadable
 from mpm.config.problems import brief, near
 from mpm.config.quantities import Number, Positive, Quantity
 

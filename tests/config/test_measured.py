@@ -94,10 +94,11 @@ def curve(folder, content, config=BASE):
         (HEAD + '1,"20\n2,30\n', 2, "this is not CSV"),
         (HEAD.encode() + b"1,20\n2,\xff\n", 3, "not UTF-8 text (byte 0xff)"),
         ("minute|oven_degC\n1|20\n", 1, "no such column: 'oven_degC'"),
-        (HEAD + '1,"20,5"\n', 2, "allowed: 20.5, or semicolons between the fields"),
+        (HEAD + '1,"1,000"\n', 2, "'1,000'; allowed: 1000 or 1.000, or semicolons between the fields"),
         ("minute,oven_degC\n12:75,20\n", 2, "'12:75' is no time of day"),
         ("minute,oven_degC\n31.02.2026 12:00,20\n", 2, "is no date"),
-        ("minute,oven_degC\n5/1/2026 12:00,20\n", 2, "minute is no finite number: '5/1/2026 12:00'"),
+        ("minute,oven_degC\n5/1/2026 23:00,20\n5/2/2026 1:00,20\n", 3, "5/2/2026 may be two days, and dates of this column differ"),
+        ("minute;oven_degC;\n0;20;\n1;;\n", 3, "oven_degC is no finite number: ''"),
         ("minute;oven_degC\n1;20,5\n2;1.000,5\n", 3, "oven_degC is no finite number: '1.000,5'"),
         ("minute,oven_degC,oven_degC\n1,20,30\n", 1, "two columns are called 'oven_degC'"),
         (HEAD + "1,20\n" * 100_001, 100_002, "more than 100000 rows"),
@@ -147,6 +148,16 @@ SCENE = BASE.replace("  probes:", "  observables: [temperature.mean, heat.total]
         ("Lap [mm:ss],T (Celsius)\n00:00,20\n01:30,40\n", "value: T (Celsius)", [(0, 293.15), (90, 313.15)]),
         ("probe_minute,T_C\n0,20\n1,40\n", "time: probe_minute, value: T_C", [(0, 293.15), (60, 313.15)]),
         ("Clock,T_C\n30:00:00,20\n30:00:10,40\n", "value: T_C", [(0, 293.15), (10, 313.15)]),
+        ("sep=;\nt / min;T / °C;\n0,5;20,0;\n1;40;\n", "unit: ''", [(30, 293.15), (60, 313.15)]),
+        ('"Time, min","Core, °F"\n"0,0",68\n"1,5","104,0"\n', "weight: 1", [(0, 293.15), (90, 313.15)]),
+        ("Zeit;Kern\nmin;°C\n0;20\n1,5;40\n", "value: Kern", [(0, 293.15), (90, 313.15)]),
+        ("a_min;a_C;b_min;b_C\n0;20;0;20\n1;30;1,5;40\n2;40;;\n", "time: b_min, value: b_C", [(0, 293.15), (90, 313.15)]),
+        ("Date,Time,CH1 (deg C)\n2026-05-01,23:59,20\n2026-05-02,0:00,40\n", "weight: 1", [(0, 293.15), (60, 313.15)]),
+        ("Timestamp,T (°F)\n4/30/2026 11:59:00 PM,68\n5/1/2026 12:00:30 AM,104\n", "weight: 1", [(0, 293.15), (90, 313.15)]),
+        ("Zeit;T_C\n30/04/26 23:59;20\n01/05/26 00:00;40\n", "weight: 1", [(0, 293.15), (60, 313.15)]),
+        ("Time (min);T_C\n0:30;20\n100:30;−40\n", "weight: 1", [(30, 293.15), (6030, 233.15)]),
+        ("# s, T_K, sd_K\n0, 293.15, 1\n60, 313.15, 2\n", "value: T_K, sigma: sd_K", [(0, 293.15, 1), (60, 313.15, 2)]),
+        ("s,T_F,spread\n0,68,1.8\n60,104,3.6\n", "value: T_F, sigma: spread", [(0, 293.15, 1), (60, 313.15, 2)]),
     ],
 )
 def test_curves_as_people_write_them(tmp_path, content, how, samples):
@@ -165,6 +176,7 @@ def test_the_export_of_an_eight_sensor_probe(tmp_path):
     found = curve(tmp_path, PROBE, SCENE % "file: curve.csv, value: T1, sigma: 0.5 K")
     assert [t for t, _ in found] == [0, 5, 10]
     assert [theta for _, theta in found] == pytest.approx([277.4, 277.5, 277.7])
+    assert curve(tmp_path, PROBE.replace("Combustion Inc.", "Another maker's"), SCENE % "file: curve.csv, value: T1, sigma: 0.5 K") == found
 
 
 @pytest.mark.parametrize(
