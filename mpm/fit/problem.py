@@ -135,7 +135,7 @@ def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
     known = Names(experiment)
     variation = Vary(ranges(asked), known).read()
     parameters = []
-    for one in variation.parameters():
+    for one in (parameter for group in variation.groups for parameter in group.parameters):  # and none that follows from these by a formula
         low, high = one.low, one.high
         value = at_path(experiment.resolved(), one.path)
         start = float(value) if isinstance(value, float | int) else math.sqrt(low * high) if one.log else (low + high) / 2

@@ -136,6 +136,7 @@ def middle(sample: Sample, name: str) -> float:
     value: Any = sample.config
     for key in parameter.config_path.split("."):
         value = value.get(key) if isinstance(value, dict) else value[int(key)] if isinstance(value, list) and key.isdigit() and int(key) < len(value) else None
+    value = value.get("value") if isinstance(value, dict) else value  # a named parameter
     low, high = parameter.ends
     return float(value) if isinstance(value, float | int) and low <= value <= high else float(parameter.back(0.5))
 

@@ -97,6 +97,20 @@ def test_a_curve_without_noise_gives_back_its_parameters(truth):
     assert all(far(done.problem, one.u) < 1e-6 for one in done.searches.found)
 
 
+def test_named_parameters_are_fitted_by_name_and_formulas_follow_them(truth):
+    """What a formula makes of a parameter is no parameter of its own."""
+    materials = {"dough": {"density": 500, "heat": {"fourier": {"kappa": "=crumb", "alpha": 2800}}}}
+    surfaces = [
+        {"of": "slab", "side": "left", "convection": {"beta": "=stone", "outside": 473.15}},
+        {"of": "slab", "side": "right", "flux": {"q": "=75*stone"}},
+    ]
+    scene = {**SLAB, "parameters": {"crumb": 0.3, "stone": {"value": 30, "label": "heat transfer of the stone"}}, "materials": materials, "surfaces": surfaces}
+    output = {**SLAB["output"], "measured": clean(truth)}
+    problem = read(experiment := load({**scene, "output": output, "fit": {"parameters": {"crumb": [0.1, 2], "stone": {"log": [4, 100]}}}}))
+    assert problem.names == ["crumb", "stone"] and problem.parameters[1].long_name == "heat transfer of the stone"
+    assert solve(problem, InProcess(problem, bare(experiment))).known.values == pytest.approx([0.4, 20], rel=1e-6)
+
+
 @pytest.mark.slow
 def test_ten_starts_give_back_the_parameters_to_a_millionth(truth):
     done = fitted(config(clean(truth), starts=10))
