@@ -1,6 +1,6 @@
 """`where` and `derive`: conditions and formulas over parameters, read by Python's grammar but never evaluated by Python: only the nodes below are walked.
 
-Formulas: + - * / **, numbers, names (short names or dotted paths, entries of lists as `loads[0]`), pi, and the functions below. Conditions: also
+Formulas: + - * / **, numbers, names (short names or dotted paths, entries of lists as `loads[0]` or `loads.0`), pi, and the functions below. Conditions: also
 comparisons, and or not, text.
 Every number is a float, so that no power takes long; text is compared and never reckoned with; what is no number (NaN, complex) is an error.
 """
@@ -8,6 +8,7 @@ Every number is a float, so that no power takes long; text is compared and never
 import ast
 import math
 import operator
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -36,7 +37,7 @@ class Formula:
         if len(text) > MOST_LETTERS:
             raise ConditionError(f"the {self.what} is longer than {MOST_LETTERS} letters")
         try:
-            tree = ast.parse(text.strip(), mode="eval")
+            tree = ast.parse(indexed(text.strip()), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
             raise ConditionError(f"this is no {self.what}: {getattr(error, 'msg', None) or error}") from None
         if levels(tree.body) > MOST_LEVELS:
@@ -140,6 +141,12 @@ class Condition(Formula):
         if isinstance(left, str) and isinstance(right, str):
             return left, right
         return self.number(left), self.number(right)
+
+
+def indexed(text: str) -> str:
+    """`loads.0.value` as `loads[0].value`, which Python can read; text in quotes stays as it is."""
+    change = lambda match: match[0] if match[0][0] in "'\"" else re.sub(r"\.(\d+)(?![\w])", r"[\1]", match[0])  # noqa: E731
+    return re.sub(r"""'[^']*'|"[^"]*"|(?<![\w.])[^\W\d]\w*(?:\.\w+|\[\d+\])+""", change, text)
 
 
 def levels(tree: ast.AST) -> int:

@@ -1,5 +1,6 @@
 """Names: from what a user writes, `kappa`, `κ`, `surfaces.top.convection.beta`, to the one path in this file that answers to it."""
 
+import re
 from collections import defaultdict
 from typing import Any
 
@@ -13,6 +14,11 @@ from mpm.config.schema_paths import Path, Slot, leaves, places
 GREEK = {"κ": "kappa", "β": "beta", "α": "alpha", "η": "eta"}
 NOT_VARIED = ("title", "sweep", "smoke", "chart", "stability", "fit", "formulas")
 ROOT = Slot(Experiment)
+
+
+def dots(name: str) -> str:
+    """`upper[0]` as `upper.0`."""
+    return re.sub(r"\[(\d+)\]", r".\1", name)
 
 
 class UnknownName(ValueError):
@@ -52,7 +58,7 @@ class Names:
 
     def resolve(self, name: str) -> tuple[Path, Slot]:
         """The path and slot that a name stands for; UnknownName lists what would do."""
-        parts = tuple(GREEK.get(part, part) for part in name.split("."))
+        parts = tuple(GREEK.get(part, part) for part in dots(name).split("."))
         if parts[-1] in self.declared and parts in ((parts[-1],), ("parameters", parts[-1])):  # what the file declares comes first
             return (path := self.declared[parts[-1]]), self.slots[path]
         found = list(self.tails.get(parts, ()))
@@ -102,7 +108,7 @@ class Names:
         try:
             return self.resolve(name)[0]
         except UnknownName as unknown:
-            parts = name.split(".")
+            parts = dots(name).split(".")
             if parts[0] not in Experiment.model_fields:
                 raise
             slot, value, path = ROOT, self.experiment, []

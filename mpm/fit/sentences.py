@@ -9,7 +9,7 @@ from mpm.records.variables import describe
 from mpm.text import amount, figure
 
 LOOSE = 0.1  # relative standard error from which parameters that move together are said not to be told apart
-PREDICTED = 0.9  # share of held-out values within their 95 % band from which a prediction is called good
+CHANCE = 0.01  # what is less likely, were the model right, is no chance: so few held-out values within their 95 % band
 
 
 def unit(units: str) -> str:
@@ -84,17 +84,19 @@ def together(done: Any, pair: Any) -> str:
 
 def held(done: Any) -> list[str]:
     """What was predicted and not fitted."""
-    from mpm.fit.identify import band
+    from scipy.stats import binom
+
+    from mpm.fit.identify import LEVEL, band
 
     said = []
     for curve in done.problem.held:
         predicted, half = band(done.evaluator, done.known, curve.predict)
         off = predicted - curve.values
         noise = curve.sigma if curve.sigma is not None else math.sqrt(max(done.known.variance, 0.0) / curve.weight)
-        within = float(np.mean(np.abs(off) <= np.sqrt(half**2 + (done.known.quantile * noise) ** 2)))
-        good = "" if within >= PREDICTED else ": the model, fitted to the rest, does not predict it"
+        within = int(np.sum(np.abs(off) <= np.sqrt(half**2 + (done.known.quantile * noise) ** 2)))
+        good = "" if binom.cdf(within, len(off), LEVEL) >= CHANCE else ": the model, fitted to the rest, does not predict it"
         rms = f"{float(np.sqrt(np.mean(off**2))):.3g}{unit(curve.units)} rms"
-        said.append(f"{curve.name}, held out: {rms}, {100 * within:.0f} % of its values within the 95 % band{good}")
+        said.append(f"{curve.name}, held out: {rms}, {100 * within / len(off):.0f} % of its values within the 95 % band{good}")
     return said
 
 

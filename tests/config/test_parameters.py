@@ -76,6 +76,17 @@ def test_indexed_paths_in_derive_and_places_in_one_dimension_as_numbers(tmp_path
     assert points.derived[0][1].values == pytest.approx([3.5, 4.0])
 
 
+@pytest.mark.parametrize("form", ["bodies.slab.shape.box.upper[0]", "bodies.slab.shape.box.upper.0", "upper.0", "upper[0]"])
+def test_entries_of_lists_are_named_by_dots_or_brackets(tmp_path, form):
+    text = (
+        PLAIN
+        + f"sweep: {{axes: {{'{form}': [0.035, 0.04]}}, derive: {{beta: '1.0e2 * {form}', 'output.probes.middle[0]': '{form} - .01'}}, where: '{form} > 0'}}\n"
+    )
+    points = plan(scene(tmp_path, text))
+    assert [row.values for _, row in points.derived] == [pytest.approx([3.5, 4.0]), pytest.approx([0.025, 0.03])]
+    assert upper(scene(tmp_path, PLAIN, **{form: 0.05})) == 0.05
+
+
 @pytest.mark.parametrize(
     ("old", "new", "line", "words"),
     [
