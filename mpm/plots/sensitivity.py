@@ -1,4 +1,4 @@
-"""The figure of `mpm sensitivity`: indices of each observable with their intervals, and the share that failed along each parameter."""
+"""The figure of `mpm sensitivity`: indices of each observable with their intervals, and the share that failed, or did not reach it, along each parameter."""
 
 from typing import Any
 
@@ -13,21 +13,27 @@ MOST = 6
 def draw(found: Any) -> Any:
     """From sensitivity.nc to a figure."""
     names, observables = list(map(str, found.parameter.values)), list(map(str, found.observable.values))[:MOST]
-    failing = bool((found.failed.values > 0).any())
+    panels = [(f"failed, {100 * float(found.attrs['share_failed']):.0f} % of {int(found.attrs['points'])} points", found.failed.values, found.failed_p.values)]
+    for k in range(len(observables)):
+        title = words.wrapped(
+            f"{found.observable_long_name.values[k]}: not reached, {100 * found.unreached.values[k] / found.known.values[k]:.0f} % of points", 34
+        )
+        panels.append((title, found.unreached_share.values[k], found.unreached_p.values[k]))
+    panels = [panel for panel in panels if (panel[1] > 0).any()]
     with styled():
-        columns = min(3, len(observables) + failing)
-        rows = -(-(len(observables) + failing) // columns)
+        columns = min(3, len(observables) + len(panels))
+        rows = -(-(len(observables) + len(panels)) // columns)
         fig = figure(f"Sensitivity: {found.attrs['title']}", 1.2 + rows * (1.3 + 0.42 * len(names)))
         axes = fig.subplots(rows, columns, squeeze=False).ravel()
-        for ax in axes[len(observables) + failing :]:
+        for ax in axes[len(observables) + len(panels) :]:
             ax.set_axis_off()
         for k, ax in enumerate(axes[: len(observables)]):
             bars(ax, found, k, names)
             late = int(found.unreached.values[k])
             censored = f"\nnot reached at {late} of {int(found.known.values[k])} points" if late else ""
             ax.set_title(words.wrapped(str(found.observable_long_name.values[k]), 34) + censored)
-        if failing:
-            thirds(axes[len(observables)], found, names)
+        for ax, panel in zip(axes[len(observables) :], panels, strict=False):
+            thirds(ax, names, *panel)
         shown = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
         fig.legend(shown.values(), shown, loc="outside lower center", ncols=len(shown), fontsize=SMALL)
     return fig
@@ -55,12 +61,11 @@ def bars(ax: Any, found: Any, k: int, names: list[str]) -> None:
     ax.invert_yaxis()
 
 
-def thirds(ax: Any, found: Any, names: list[str]) -> None:
-    """Share that failed in the thirds of each range."""
+def thirds(ax: Any, names: list[str], title: str, shares: np.ndarray, p: np.ndarray) -> None:
+    """Share that failed, or did not reach it, in the thirds of each range."""
     y = np.arange(len(names))
-    for t, said in enumerate(("failed in the lower third", "middle third", "upper third")):
-        ax.barh(y + (t - 1) * 0.26, 100 * found.failed.values[:, t], 0.24, color=OKABE_ITO[1], alpha=(0.35, 0.65, 1.0)[t], label=said)
-    chance = ["" if p < 0.01 else "\n(by chance)" for p in found.failed_p.values]
-    ax.set_yticks(y, [said_of(name) + more for name, more in zip(names, chance, strict=True)])
-    ax.set(title=f"failed, {100 * float(found.attrs['share_failed']):.0f} % of {int(found.attrs['points'])} points", xlabel="[%]")
+    for t, said in enumerate(("share in the lower third of the range", "middle third", "upper third")):
+        ax.barh(y + (t - 1) * 0.26, 100 * shares[:, t], 0.24, color=OKABE_ITO[1], alpha=(0.35, 0.65, 1.0)[t], label=said)
+    ax.set_yticks(y, [said_of(name) + ("" if chance < 0.01 else "\n(by chance)") for name, chance in zip(names, p, strict=True)])
+    ax.set(title=title, xlabel="[%]", xlim=(0, 100))
     ax.invert_yaxis()

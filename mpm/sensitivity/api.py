@@ -20,8 +20,6 @@ from mpm.sensitivity.surrogate import Surrogate, build
 from mpm.sensitivity.surrogate import indices as of_surrogate
 from mpm.sweep.lock import Refused
 
-SHOWN = 0.02  # an index whose interval begins above this is an effect
-
 
 @dataclass
 class Effects:
@@ -115,7 +113,7 @@ def sentences(found: Found) -> list[str]:
             value, low, high = (one.first if one.first is not None else one.spearman)[k]
             least = 0 if one.first is not None else -1
             more = f"; total {span(one.total[k], 0)}" if one.total is not None else ""
-            seen = low > SHOWN if one.first is not None else low * high > 0
+            seen = low > 0 if one.first is not None else low * high > 0
             parts.append(f"{sample.parameters[k].name} {span((value, low, high), least)}{more}" + ("" if seen else ", no effect of its own shown"))
         what = "shares of the variance" if one.first is not None else "rank correlations"
         said.append(f"{one.name}, {what} ({one.how}):")
@@ -146,12 +144,17 @@ def where(rows: list[Row], what: str) -> list[str]:
 
 
 def write(found: Found, path: Path) -> Path:
-    """OUT/sensitivity.nc: spearman, first, total (observable, parameter, of); failed (parameter, third), failed_p; NaN where there is none."""
+    """OUT/sensitivity.nc: spearman, first, total (observable, parameter, of); failed (parameter, third), failed_p; of what was not reached
+    unreached_share (observable, parameter, third), unreached_p; NaN where there is none."""
     sample, names = found.sample, [parameter.name for parameter in found.sample.parameters]
     text = lambda values: np.array(list(values), dtype=object)  # noqa: E731
     nothing = np.full((len(names), 3), np.nan)
     stack = lambda kind: np.array([nothing if getattr(one, kind) is None else getattr(one, kind) for one in found.effects])  # noqa: E731
-    rows, effects = {row.name: row for row in found.failed}, found.effects
+    effects = found.effects
+    by_name = lambda rows: {row.name: row for row in rows}  # noqa: E731
+    shares = lambda rows: [rows[n].shares if n in rows else (0.0,) * 3 for n in names]  # noqa: E731
+    chances = lambda rows: [rows[n].p if n in rows else 1.0 for n in names]  # noqa: E731
+    rows, late = by_name(found.failed), [by_name(found.unreached.get(one.name, ())) for one in effects]
     said = lambda words: {"units": "1", "long_name": words}  # noqa: E731
     about = {"spearman": "rank correlation", "first": "first-order index", "total": "total index"}
     variables = {
@@ -162,8 +165,10 @@ def write(found: Found, path: Path) -> Path:
         "how": Array(("observable",), text(one.how for one in effects), {"long_name": "how the indices were made"}),
         "known": Array(("observable",), np.array([one.known for one in effects]), said("points that count")),
         "unreached": Array(("observable",), np.array([one.late for one in effects]), said("points that count as at least the end")),
-        "failed": Array(("parameter", "third"), np.array([rows[n].shares if n in rows else (0.0,) * 3 for n in names]), said("share failed")),
-        "failed_p": Array(("parameter",), np.array([rows[n].p if n in rows else 1.0 for n in names]), said("p that it does not matter")),
+        "unreached_share": Array(("observable", "parameter", "third"), np.array([shares(one) for one in late]), said("share that did not reach it")),
+        "unreached_p": Array(("observable", "parameter"), np.array([chances(one) for one in late]), said("p that it does not matter")),
+        "failed": Array(("parameter", "third"), np.array(shares(rows)), said("share failed")),
+        "failed_p": Array(("parameter",), np.array(chances(rows)), said("p that it does not matter")),
     }  # fmt: skip
     attrs = {"Conventions": "CF-1.11", "title": sample.title, "sentences": sentences(found), "share_failed": found.share, "points": len(sample.ok),
              "versions": versions(), "git_revision": git_revision()}  # fmt: skip
