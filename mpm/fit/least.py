@@ -12,7 +12,8 @@ import numpy as np
 from mpm.fit.evaluate import Evaluator, NoDerivative, said
 from mpm.sweep.designs import unit_sample
 
-TOLERANCE = {"xtol": 1e-8, "ftol": 1e-8, "gtol": None}
+TOLERANCE, OF_STEP = 1e-8, 1e-2  # of u and of the sum of squares; of u where `step` says that the answer is rough, as a share of that step
+USUAL = 1e-3  # step
 MOST = 100  # evaluations of a start, without those for derivatives
 RESCUE = 8
 ALIKE = 1e-3  # of the range: optima that are nearer are one
@@ -95,5 +96,6 @@ def one(evaluator: Evaluator, start: np.ndarray) -> Search:
     inside = np.clip(start, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
     if evaluator.residuals([inside])[0] is None:
         raise NoDerivative(f"{said(evaluator.problem, inside)} could not be computed")
-    done = least_squares(residuals, inside, jac=evaluator.jacobian, bounds=(low, high), x_scale="jac", max_nfev=MOST, **TOLERANCE)
+    near = max(TOLERANCE, OF_STEP * evaluator.problem.step) if evaluator.problem.step > USUAL else TOLERANCE
+    done = least_squares(residuals, inside, evaluator.jacobian, (low, high), x_scale="jac", max_nfev=MOST, xtol=near, ftol=TOLERANCE, gtol=None)
     return Search(start, done.x, float(done.cost), done.status > 0, done.message.rstrip("."), int(done.nfev))

@@ -16,7 +16,7 @@ def draw(tree: Any) -> Any:
     root, profile, curves = tree.to_dataset(), tree["profile"].to_dataset(), tree["curves"].to_dataset()
     units = list(dict.fromkeys(str(unit) for unit in root.curve_units.values))
     parameters = len(root.parameter)
-    columns = max(2, parameters)
+    columns = max(3, parameters)
     with styled():
         rows = len(units)
         fig = figure(f"Fit: {tree.attrs['title']}", 3.1 * rows + 2.8)
@@ -44,26 +44,34 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
         colour, held = OKABE_ITO[k % len(OKABE_ITO)], bool(root.held_out.values[k])
         said = f"{name}{', held out' if held else ''}: {with_unit(root.misfit.values[k] * scale.factor, scale.units.replace('°C', 'K'), 3)} rms"
         residual = root.residual.values[mine] * scale.factor
-        if np.isnan(times).all():
-            numbers.append(
-                f"{name}: measured {with_unit(scale(values)[0], scale.units, 4)}, model {with_unit(scale(root.fitted.values[mine])[0], scale.units, 4)}"
-            )
-            continue
+        if np.isnan(times).all() or len(times) == 1:
+            both = [with_unit(scale(row)[0], scale.units, 4) for row in (values, root.fitted.values[mine])]
+            numbers.append(f"{name}{', held out' if held else ''}\nmeasured {both[0]}\nmodel {both[1]}")
+            if np.isnan(times).all():
+                continue
+            said = said.partition(":")[0]
         ax.plot(clock(times), scale(values), "o", ms=4.5, mfc="white" if held else colour, mec=colour, label=said)
         ax.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("temperature" if unit == "K" else name, scale.units))
-        left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
-        left.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("difference", scale.units.replace("°C", "K")))
+        if len(times) > 1:
+            left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
+            left.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("difference", scale.units.replace("°C", "K")))
         if f"fitted_{name}" in curves:
             fitted, half = curves[f"fitted_{name}"].values, np.nan_to_num(curves[f"band_{name}"].values)
             ax.plot(clock(curves.time.values), scale(fitted), color=colour, lw=1.5)
             ax.fill_between(clock(curves.time.values), scale(fitted - half), scale(fitted + half), color=colour, alpha=0.2, lw=0)
-    left.axhline(0, color=QUIET, lw=0.8)
     ax.set_title("measured (dots), model with its 95 % band (line)")
-    left.set_title("model less measurement")
+    if left.lines:
+        left.axhline(0, color=QUIET, lw=0.8)
+        left.set_title("model less measurement")
+    else:
+        left.set_axis_off()
     if ax.get_legend_handles_labels()[0]:
         ax.legend(fontsize=SMALL)
+    if not ax.lines:
+        ax.set_axis_off()
     if numbers:
-        ax.text(0.02, 0.95, "\n".join(numbers), transform=ax.transAxes, va="top", fontsize=SMALL)
+        place = left if not left.lines else ax
+        place.text(0.02, 0.95, "\n".join(numbers), transform=place.transAxes, va="top", fontsize=SMALL)
 
 
 def with_unit(value: float, unit: str, digits: int) -> str:
