@@ -1,6 +1,7 @@
 """Rules for the output: probes lie in a body, observables and fields exist and have their physics, exact solutions their body."""
 
 from collections.abc import Callable, Iterator
+from itertools import combinations
 from typing import Any
 
 from mpm.config.explain import Finding
@@ -73,15 +74,20 @@ def taken(name: str) -> Iterator[Finding]:
 
 
 def apart(experiment: Any) -> Iterator[Finding]:
-    """Every observable has a name of its own in the dataset, where dots become underscores."""
+    """Every series has a name of its own in the dataset, where dots become underscores: of probes, of what bodies do to each other, and observables."""
     from mpm.records.variables import VARIABLES, dataset_name, of_probe
 
     seen = {variable: f"the probe {probe}" for probe in experiment.output.probes for variable in of_probe(probe) if variable not in VARIABLES}
+    met = {f"{one}_{two}" for one, two in combinations(experiment.bodies, 2)}
+    for one, two in combinations(experiment.bodies, 2):
+        name, told = f"heat_{one}_{two}", f"the heat between {one} and {two}"
+        if (other := seen.setdefault(name, told)) != told:
+            yield Finding(("bodies", two), f"{other} and {told} would both be {name} in the dataset", "a body of another name", on_key=True)
     for index, name in enumerate(experiment.output.observables):
         other = seen.setdefault(dataset_name(name), name)
-        if other != name:
+        if other != name and name.removeprefix("heat.") not in met:
             said = f"{other} and {name} would both be {dataset_name(name)} in the dataset"
-            yield Finding(("output", "observables", index), said, "a probe of another name", given=name)
+            yield Finding(("output", "observables", index), said, "a probe or a body of another name", given=name)
 
 
 def overview(experiment: Any) -> Iterator[Finding]:

@@ -92,6 +92,26 @@ def test_a_side_has_one_convection(told, second):
     assert line == 9 and path.startswith("surfaces.1.") and message == "'s' has a convection there already, from surfaces.0 (side all)"
 
 
+@pytest.mark.parametrize(
+    ("names", "observables", "message"),
+    [
+        ("a b_c a_b c", "temperature.mean", "the heat between a and b_c and the heat between a_b and c would both be heat_a_b_c in the dataset"),
+        ("total b", "heat.total.b", "the heat between total and b and heat.total.b would both be heat_total_b in the dataset"),
+        ("total b", "heat.total", ""),
+        ("a b a_b", "heat.a_b", ""),
+    ],
+)
+def test_what_passes_between_bodies_has_a_name_of_its_own(told, names, observables, message):
+    """The heat of a pair is a series called after both."""
+    bodies = "".join(
+        f"  {name}: {{shape: {{box: {{lower: [{4 * k} mm], upper: [{4 * k + 4} mm]}}}}, temperature: 20 degC, material: d}}\n"
+        for k, name in enumerate(names.split())
+    )
+    head, _, tail = slab(observables=observables, probe="p").partition("materials:")
+    text = head.partition("  s:")[0] + bodies + "materials:" + tail.replace("of: s", f"of: {names.split()[0]}, side: left")
+    assert [found for *_, found in told(text)] == [message] * bool(message)
+
+
 def test_a_material_point_has_one_surface(told):
     """Two convections on it would silently be their sum."""
     text = slab().replace("dimension: 1, size: [20 mm], cell: 1 mm", "dimension: 0").replace("probes: {c: [6 mm]}, ", "")
