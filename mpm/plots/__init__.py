@@ -9,6 +9,7 @@ Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the fi
                               beside it the probes' temperatures of a few points, coloured by swept value. A third axis makes a panel a value; further ones stay
                               at the chosen point.
             a sample          observables against each parameter, and rank correlations with bootstrap intervals
+            refined           the plane of both axes, its points, and the line that was followed
             one point         its series
             no point ok       words: how many points, and why
 Marks       a point that is not ok is a cross under the data, its reason in the legend; a threshold that was not reached is a triangle above it;
@@ -17,13 +18,14 @@ Units       as stored, but degrees Celsius for temperatures (not for differences
 Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_temperature_centre(measured_time_centre)` [K], in general
             `measured_<series>` over a time of its own [s], with `units`, `long_name` and `source`, and without swept dimensions. `/` has `misfit_centre` [K]
             for it, a number a point; the point with the least misfit is then the chosen point.
-May use     xarray, matplotlib, mpm.records.variables                                    May not  see config, sweep or anything that computes
+May use     xarray, matplotlib, scipy, mpm.records.variables                               May not  see config, sweep or anything that computes
 To add      a function View -> Figure in layouts.py or a sibling, and a line in `_draw`
 
 Further files
     chart       the figure of a chart (`chart.nc`)
     fit         the figure of `mpm fit`
     outlines    walls of the domain and tools, as lines in space
+    refined     the figure of two refined axes
     sensitivity the figure of `mpm sensitivity`
     stability   the figure of `mpm stability`
     style       how figures look

@@ -16,9 +16,9 @@ def overview(view: View) -> Any:
         if not view.ok.any():
             return nothing(view)
         if view.design is not None:
-            from mpm.plots.sample import scatter
+            from mpm.plots import refined, sample
 
-            return scatter(view)
+            return sample.scatter(view) if refined.asked(view) is None else refined.plane(view)
         return swept(view) if view.axes and view.finals else single(view)
 
 

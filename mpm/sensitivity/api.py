@@ -78,9 +78,11 @@ def wanted(sample: Sample) -> list[str]:
 def effects_of(sample: Sample, name: str, y: np.ndarray, late: int, failed: list[Row], surrogate: bool, seed: int) -> Effects:
     """The indices of one observable."""
     known, x = np.isfinite(y), sample.unit
-    if known.sum() < indices.FEWEST:
+    if known.sum() < indices.FEWEST or sample.refined:
         ranks = indices.spearman(x[known], y[known], seed) if known.sum() > 3 else np.full((x.shape[1], 3), np.nan)
-        return Effects(name, int(known.sum()), late, ranks, None, None, f"only {known.sum()} points are known, and indices need {indices.FEWEST}")
+        few = f"only {known.sum()} points are known, and indices need {indices.FEWEST}"
+        why = "refinement placed the points, which are no sample of the ranges: no indices" if sample.refined else few
+        return Effects(name, int(known.sum()), late, ranks, None, None, why)
     ranks = indices.spearman(x[known], y[known], seed)
     biased = bool(failed) and failed[0].p < SURE
     if sample.base and not biased:

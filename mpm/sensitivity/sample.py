@@ -56,6 +56,11 @@ class Sample:
     config: dict
 
     @property
+    def refined(self) -> bool:
+        """Whether refinement placed the points, so that they are no sample of the ranges."""
+        return bool((self.config.get("sweep") or {}).get("refine"))
+
+    @property
     def unit(self) -> np.ndarray:
         """Parameters over their ranges, shape (points, parameters)."""
         return np.stack([parameter.unit(parameter.values) for parameter in self.parameters], axis=1)

@@ -58,6 +58,7 @@ class Rounds:
                  derive: dict[str, str] | None = None, axis: bool = False):  # fmt: skip
         self.experiment, self.paths = experiment.model_copy(update={"sweep": None}), tuple(paths)
         self.experiment._placed(experiment)
+        self.refine = experiment.sweep and experiment.sweep.refine
         self.derive, self.axis = derive or {}, axis  # axis: the one path is a dimension of its own in the dataset
         self.options, self.reporter = options or Options(), reporter or Reporter()
         self.store, self.ran, self.asked, self.compiling = Store(out), 0, {}, 0.0
@@ -153,7 +154,9 @@ class Rounds:
     def all(self) -> Any:
         """The experiment with every point that was asked for, each once."""
         points = list(self.asked.values())
-        return self.with_sweep(Sweep(axes={self.paths[0]: [value for (value,) in sorted(points)]}, derive=self.derive)) if self.axis else self.sweep(points)
+        made = self.with_sweep(Sweep(axes={self.paths[0]: [value for (value,) in sorted(points)]}, derive=self.derive)) if self.axis else self.sweep(points)
+        made.sweep.__dict__["refine"] = self.refine  # the dataset tells what it follows
+        return made
 
     def collect(self) -> tuple[Any, dict[str, int]]:
         """OUT/sweep.nc of every point asked for: the plan, and counts by status."""

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.legend import Legend
 
 from mpm.plots import overview
 from mpm.plots.sample import correlation, ranks, spearman
@@ -84,3 +85,21 @@ def test_points_that_did_not_reach_are_triangles_and_measured_curves_have_a_pane
     assert "not reached within 100 s" in [text.get_text() for text in upper.legends[0].get_texts()]
     dots = [line for line in lower.axes[0].lines if line.get_linestyle() == "None" and len(line.get_xdata()) == 3]
     assert len(dots) == 1 and dots[0].get_ydata() == pytest.approx([31.85, 41.85, 46.85])
+
+
+def test_two_refined_axes_are_a_plane_with_the_line_that_was_followed(tree, tmp_path):
+    """ln beta + 2 kappa = 4: the line runs through it, straight between the points, also beside a point that failed and one that was not reached."""
+    kappa, u = (row.ravel() for row in np.meshgrid([0.0, 0.5, 1.0], np.log([5.0, 15.811388300841896, 50.0]), indexing="ij"))
+    kappa, u = np.append(kappa, [0.25, 0.75]), np.append(u, [3.5, 2.5])
+    status, error = np.zeros(11, np.int8), np.full(11, "", dtype=object)
+    status[0], error[0] = 4, "diverged: det F <= 0 at particle 2, t = 1 s, step 4"
+    answer = 300 + u + 2 * kappa
+    answer[1] = np.nan
+    config = {"sweep": {"refine": {"of": "temperature.mean", "level": 304.0}}}
+    fig = overview(tree({"kappa": kappa, "beta": np.exp(u)}, {"temperature_mean": answer}, status=status, error=error, sample=True, config=config))
+    plane = fig.axes[0]
+    assert (plane.get_xscale(), plane.get_yscale(), len(plane.collections[0].get_offsets())) == ("linear", "log", 9)
+    x, y = np.vstack([path.vertices for path in plane.collections[1].get_paths()]).T
+    assert np.log(y) + 2 * x == pytest.approx(4, abs=1e-9)
+    said = [text.get_text() for found in plane.get_children() if isinstance(found, Legend) for text in found.get_texts()]
+    assert said[0].endswith("°C, straight between the points") and said[1] == "not reached (1 point)" and said[2].startswith("diverged")
