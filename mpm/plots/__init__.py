@@ -18,7 +18,7 @@ Units       as stored, but degrees Celsius for temperatures (not for differences
 Measured    a measured curve lies in `/series`, beside the series that it belongs to: `measured_temperature_centre(measured_time_centre)` [K], in general
             `measured_<series>` over a time of its own [s], with `units`, `long_name` and `source`, and without swept dimensions. `/` has `misfit_centre` [K]
             for it, a number a point; the point with the least misfit is then the chosen point.
-May use     xarray, matplotlib, scipy, mpm.records.variables                               May not  see config, sweep or anything that computes
+May use     xarray, matplotlib, mpm.records.variables                                    May not  see config, sweep or anything that computes
 To add      a function View -> Figure in layouts.py or a sibling, and a line in `_draw`
 
 Further files

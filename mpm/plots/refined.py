@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
-from scipy.spatial import Delaunay
+from matplotlib.tri import Triangulation
 
 from mpm.plots import words
 from mpm.plots.axis import log_spaced
@@ -76,7 +76,7 @@ def crossing(u: np.ndarray, v: np.ndarray, values: np.ndarray, log_u: bool, log_
     """Stretches on which values are zero, straight within triangles over the ranges, in the logarithm where an axis is logarithmic."""
     places = np.stack([np.log(w) if log else w for w, log in ((u, log_u), (v, log_v))], axis=1)
     found = []
-    for corners in Delaunay((places - places.min(axis=0)) / np.ptp(places, axis=0)).simplices:
+    for corners in Triangulation(*((places - places.min(axis=0)) / np.ptp(places, axis=0)).T).triangles:
         ends = [(i, j) for i, j in zip(corners, np.roll(corners, 1), strict=True) if (values[i] > 0) != (values[j] > 0)]
         found += [np.array([places[i] + (places[j] - places[i]) * values[i] / (values[i] - values[j]) for i, j in ends])] if ends else []
     return [np.stack([np.exp(part[:, 0]) if log_u else part[:, 0], np.exp(part[:, 1]) if log_v else part[:, 1]], axis=1) for part in found]
