@@ -19,6 +19,7 @@ from mpm.rigid.surroundings import Programmes, Radiant, radiate
 from mpm.rigid.system import System, make_system
 
 ROUNDOFF = 1e-10  # of the heat that moves: what more is missing of a body's balance is an error, and the ledger shows it
+CANCELLED = 1e-4  # as in mpm.rigid.linear
 
 
 @dataclass(frozen=True)
@@ -66,9 +67,14 @@ class Group(System):
             gained[joint.second] += flow
         return gained
 
-    def balance(self, rate: np.ndarray, weight: np.ndarray, flows: np.ndarray, slack: float = ROUNDOFF) -> None:
-        """Spread over each body what a solver has left between sum weight `rate` and what it gains; not more than `slack` of the heat that moves."""
-        gap, size = self.gains(flows) - self.sums(weight * rate), self.sums(weight * np.abs(rate)).max()
+    def terms(self, theta: np.ndarray, supply: np.ndarray) -> float:
+        """The largest sum of what adds up to a flow, without signs [W]: large behind a surface that is held at a temperature."""
+        return float(np.append(self.sums(np.abs(supply) + np.abs(self.facing * theta)), np.abs(self.leaving * theta).sum(axis=1)).max())
+
+    def balance(self, rate: np.ndarray, weight: np.ndarray, flows: np.ndarray, terms: float, slack: float = ROUNDOFF) -> None:
+        """Spread over each body what a solver has left between sum weight `rate` and what it gains; not more than `slack` of the heat that moves, and
+        CANCELLED of that of the `terms` that make up the flows."""
+        gap, size = self.gains(flows) - self.sums(weight * rate), self.sums(weight * np.abs(rate)).max() + CANCELLED * terms
         every = np.append(np.where(np.abs(gap) <= slack * size, gap / self.sums(weight), 0.0), 0.0)
         rate += np.where(weight > 0, every[self.owner], 0.0)
 

@@ -22,7 +22,7 @@ from mpm.rigid.ordered import combined, dot
 from mpm.rigid.sdirk import TABLEAUS
 
 FILTERS, ROUNDOFF = 2, 1e-10
-CANCELLED = 1e-14  # of the terms that nearly cancel behind a stiff surface whose temperature changes
+CANCELLED = 1e-4  # times ROUNDOFF, of the terms that nearly cancel behind a stiff surface whose temperature changes
 FLOOR = 0.03  # of h^2 rho alpha/kappa
 CLOSE = 1e-4  # residual of conjugate gradients over the tolerance of a step
 
@@ -38,9 +38,10 @@ class Problem(NamedTuple):
 
 
 @kernel
-def stages(problem, solver, a, error, filters, dt, u, supply, received, k, flux):
+def stages(problem, solver, a, error, filters, slack, dt, u, supply, received, k, flux):
     """Stage slopes k (m, N), guessed from those of the last step, and the exchange rate of each stage, by a solver of M + gamma dt A.
 
+    What the sum of a slope misses of it is spread over the body, up to `slack` of the heat that moves (below 0: never).
     Returns the square of the mass norm of the error, filtered so many times."""
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
@@ -64,7 +65,7 @@ def stages(problem, solver, a, error, filters, dt, u, supply, received, k, flux)
             total += problem.weight[p] * work[p]
             size += problem.weight[p] * abs(work[p])
         flux[i] = taken
-        if abs(taken - total) <= ROUNDOFF * size + CANCELLED * scale:  # more would be an error, and the ledger has to show it
+        if abs(taken - total) <= slack * (size + CANCELLED * scale):  # more would be an error, and the ledger has to show it
             gap, whole = taken - total, np.sum(problem.weight)
             for p in range(n):
                 if problem.weight[p] > 0.0:
@@ -90,7 +91,7 @@ class LinearSteps:
     """Implicit steps of one body; the driver's protocol is in mpm.rigid.time_loop."""
 
     CARRIES = ("state", "q", "now", "slopes")
-    radius = 0.0
+    radius, closes = 0.0, ROUNDOFF
 
     def __init__(self, system, tolerance: float, order: int = 4, iterate: bool = False, checked: bool = True):
         """system: mpm.rigid.system.System with constant laws; iterate: by conjugate gradients, not by a factorisation; checked: the error is looked at."""
@@ -147,7 +148,7 @@ class LinearSteps:
                 return np.inf
         k, flux = self.slopes.copy(), np.empty(len(tableau.a))
         supply, received = self.surroundings(dt)
-        square = stages(self.problem, self.solver, tableau.a, tableau.error, self.filters, dt, self.state, supply, received, k, flux)
+        square = stages(self.problem, self.solver, tableau.a, tableau.error, self.filters, self.closes, dt, self.state, supply, received, k, flux)
         if isinstance(self.solver, Gradients) and self.solver.count[0] < 0:
             self.solver.count[0] = 0
             return np.inf
