@@ -33,8 +33,9 @@ def source(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         yield from vector(experiment, (*at, "force"), item.force, "the force")
         if truly(lambda: experiment.method.frame == "total"):
             yield Finding((*at, "force"), "the total frame does not reckon the work of a body force yet", "method.frame: updated", on_key=True)
-    if truly(lambda: experiment.method.mechanics == "implicit"):
-        yield Finding(at, "implicit mechanics knows no sources yet", EXPLICIT)
+    for key in ("heat", "heat_by_mass"):
+        if getattr(item, key) is not None and truly(lambda: experiment.method.mechanics == "implicit"):
+            yield Finding((*at, key), "implicit mechanics knows no heat from within yet", [EXPLICIT, "a force"], on_key=True)
     if experiment.time.scale > 1:
         yield Finding(at, "time scaling does not know sources", "time: {scale: 1}")
 

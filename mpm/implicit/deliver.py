@@ -7,12 +7,14 @@ from mpm.boundary import directions
 from mpm.heat.local import heat_locally, latch, thermal_stress
 from mpm.heat.setting import condition
 from mpm.implicit.assemble import elastic_b, increment, sign, trial
+from mpm.integrate.given_source import push_at
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
 from mpm.integrate.traction import share
 from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED
+from mpm.sources import Both, Given
 from mpm.state import Axisymmetric, Line, Load, NoExchange, NoSource, Plane, Surface
 from mpm.tensors import compose2, push2
 
@@ -63,20 +65,20 @@ def push_forward(F, i, A, D):
 
 
 @role
-def loads(source, nodes, x, push, dt):
-    """Add dead loads at the end of the step to the nodes' forces `push` (A, D)."""
+def loads(source, body, nodes, push, dt):
+    """Add dead loads at the end of the step, and body forces in its middle, to the nodes' forces `push` (A, D)."""
     raise TypeError(f"no implicit mechanics with {type(source).__name__}")
 
 
 @loads.register(NoSource)
-def _(source, nodes, x, push, dt):
+def _(source, body, nodes, push, dt):
     return None
 
 
 @loads.register(Load)
-def _(source, nodes, x, push, dt):
-    D = x.shape[1]
-    for p in range(x.shape[0]):
+def _(source, body, nodes, push, dt):
+    D = push.shape[1]
+    for p in range(nodes.w.shape[0]):
         if not source.loaded[p]:
             continue
         now = share(source.t[p] + dt, source.ramp)
@@ -89,6 +91,22 @@ def _(source, nodes, x, push, dt):
                 push[nodes.node[p, k], c] += now * sign(nodes, p, k, c) * force
 
 
+@loads.register(Given)
+def _(source, body, nodes, push, dt):
+    N = nodes.w.shape[0]
+    push_at(source.force, source, body, 0, N, source.t[0] + 0.5 * dt)
+    for p in range(N):
+        for k in range(nodes.w.shape[1]):
+            for c in range(push.shape[1]):
+                push[nodes.node[p, k], c] += sign(nodes, p, k, c) * nodes.w[p, k] * body.particles.m[p] * source.b[p, c]
+
+
+@loads.register(Both)
+def _(source, body, nodes, push, dt):
+    loads(source.load, body, nodes, push, dt)
+    loads(source.given, body, nodes, push, dt)
+
+
 @role
 def drag_rate(source):
     """[1/s]"""
@@ -96,6 +114,7 @@ def drag_rate(source):
 
 
 @drag_rate.register(NoSource)
+@drag_rate.register(Given)
 def _(source):
     return 0.0
 
@@ -103,6 +122,11 @@ def _(source):
 @drag_rate.register(Load)
 def _(source):
     return source.rate
+
+
+@drag_rate.register(Both)
+def _(source):
+    return source.load.rate
 
 
 @role
@@ -121,6 +145,17 @@ def _(source, i, A, D, dt):
     source.t[i] += dt
     if source.loaded[i]:
         push_forward(source.F, i, A, D)
+
+
+@pass_time.register(Given)
+def _(source, i, A, D, dt):
+    source.t[i] += dt
+
+
+@pass_time.register(Both)
+def _(source, i, A, D, dt):
+    pass_time(source.load, i, A, D, dt)
+    pass_time(source.given, i, A, D, dt)
 
 
 @kernel

@@ -154,7 +154,7 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     lam, mu = stiffest(body)
     nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity, mu)
     pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source)
-    loads(body.source, nodes, body.particles.x, pull, dt)
+    loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
     skin = new_skin(len(scene.gravity), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
     lay_skins(scene.space, scene.bodies, skin)

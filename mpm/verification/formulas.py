@@ -46,6 +46,8 @@ def exact(experiment):
         codes["temperature"] = total(experiment, [(given.temperature, 1.0, 0.0, None)])
     if given.displacement is None:
         return Beginning(lambda x, t: values(codes["temperature"], x - shift, t))
+    if name != next(iter(experiment.bodies)):
+        raise ValueError(f"a displacement is compared for the first body that the config names: put {name} there")
     if material.elastic is None or len(given.displacement) != D:
         raise ValueError(f"a displacement needs one formula a direction ({D}), and a body with `elastic`")
     moved = [total(experiment, [(one, 1.0, 0.0, None)]) for one in given.displacement]

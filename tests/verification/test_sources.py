@@ -22,6 +22,7 @@ SLAB = {
     "output": {"every": 0.1},
 }
 MOVES = {"materials": {"m": SLAB["materials"]["m"] | {"elastic": {"hencky": {"E": 10.0, "nu": 0.0}}}}}
+PUSH = {"table": {"time": [0.0, 0.2, 0.2, 0.4], "value": [0.0, 0.1, -0.15, 0.0]}}
 JUMPS = {"table": {"time": [0.0, 0.13, 0.13, 0.4], "value": [5.0, 5.0, -2.0, 1.0]}}
 
 
@@ -103,6 +104,7 @@ def moving(plain):
         "latent": slab | {"sources": [{"of": "slab", "heat": 900.0}], "time": {"end": 0.1}, "output": {"every": 0.05}, "materials": {"m": melts}},
         "pushed": slab | pushed,
         "single": slab | {"sources": [{"of": "slab", "heat": JUMPS}], "method": {"precision": "float32"}, "time": {"end": 0.4, "step": 1e-3}},
+        "implicit": slab | {"sources": [{"of": "slab", "force": [PUSH], "until": 0.32}], "method": {"mechanics": "implicit"}, "time": {"end": 0.4}},
         "total": slab | {"sources": [{"of": "slab", "heat": JUMPS}], "method": {"frame": "total"}},
     }  # fmt: skip
     return dict(zip(scenes, plain(list(scenes.values())), strict=True))
@@ -153,6 +155,16 @@ def test_a_force_beside_a_drag(moving):
     assert run["series"]["work_loads"][-1] == pytest.approx(run["series"]["energy_total"][-1], abs=lag) and run["series"]["energy_total"][-1] > 50 * lag
 
 
+def test_a_force_in_steps_of_implicit_mechanics(moving):
+    """A ramp that jumps and ends, on a free slab: velocity is its integral to rounding, as steps end on jumps; the place to what the steps are long."""
+    run = moving["implicit"]
+    t, m = run["times"], run["series"]["mass_total"][0]
+    late = np.clip(t - 0.2, 0.0, 0.12)
+    exact = 0.25 * np.minimum(t, 0.2) ** 2 - 0.15 * late + 0.375 * late**2
+    assert run["kind"] == "completed" and np.abs(exact).max() > 4e-3
+    assert run["series"]["momentum_x"] / m == pytest.approx(exact, abs=1e-14)
+
+
 REFUSED = [
     ({"sources": [{"of": "slab", "heat": {"formula": "T"}}]}, "sources.0.heat.formula", "does not move|do not move"),
     ({"sources": [{"of": "slab", "heat": {"formula": "y"}}]}, "sources.0.heat.formula", "knows no 'y'"),
@@ -166,7 +178,7 @@ REFUSED = [
     ({"sources": [{"of": "slab", "heat": 1.0, "from": 2, "until": 1}]}, "sources.0.until", "before it begins"),
     (MOVES | {"sources": [{"of": "slab", "force": [1.0, 2.0]}]}, "sources.0.force", "1 number"),
     (MOVES | {"sources": [{"of": "slab", "force": [1.0]}], "method": {"frame": "total"}}, "sources.0.force", "total frame"),
-    (MOVES | {"sources": [{"of": "slab", "heat": 1.0}], "method": {"mechanics": "implicit"}}, "sources.0", "implicit mechanics"),
+    (MOVES | {"sources": [{"of": "slab", "heat": 1.0}], "method": {"mechanics": "implicit"}}, "sources.0.heat", "implicit mechanics"),
     (MOVES | {"sources": [{"of": "slab", "heat": 1.0}], "time": {"end": 1.0, "scale": 10}}, "sources.0", "time scaling"),
 ]  # fmt: skip
 
