@@ -1,11 +1,13 @@
 """mpm sweep: every point, over processes; the same command again continues or does nothing."""
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, again, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
+from mpm_cli.unseen import unseen
 
 RERUN = ("failed", "stale", "all")
 
@@ -103,17 +105,27 @@ def draw(result: Any) -> Any:
         return None
     if not result.collected and picture.exists():
         return picture
-    import xarray
+    from mpm.sweep.apart import apart
 
+    done = apart("from mpm_cli.sweep import overview; overview(*sys.argv[1:])", str(dataset), str(picture))
+    if done.returncode < 0:
+        warn(f"the figure was not drawn: its process ended by signal {-done.returncode}; `mpm plot {result.out} -o {picture}` tries again")
+    return picture if done.returncode == 0 else None
+
+
+def overview(dataset: str, picture: str) -> None:
+    """Draw sweep.png in a process of its own (exit code 1 where that fails): xarray and matplotlib would double what a sweep's process takes."""
     try:
-        from mpm.plots import overview
+        with unseen("dask"):
+            import xarray
 
-        with xarray.open_datatree(dataset, engine="h5netcdf") as tree:  # reads what is drawn; all fields of a large sweep would take gigabytes
-            overview(tree, picture)
+            from mpm.plots import overview as draw
+
+            with xarray.open_datatree(dataset, engine="h5netcdf") as tree:  # reads what is drawn; all fields of a large sweep would take gigabytes
+                draw(tree, Path(picture))
     except Exception as error:  # the results are there and sound; a figure that fails is told, and does not hide them
         internal(error, "the figure failed")
-        return None
-    return picture
+        raise SystemExit(1) from None
 
 
 def summary(result: Any, picture: Any) -> dict[str, Any]:

@@ -7,9 +7,11 @@
 May use     plots (how a dataset is read and named), records                              May not  see config, sweep or anything that computes
 """
 
+import json
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -34,28 +36,47 @@ class Point:
 
 
 class Results:
-    """A dataset, open. `view` is what figures see (mpm.plots.view)."""
+    """A dataset, open. Snapshots are read by h5netcdf alone: to import xarray takes longer than to export those of a run."""
 
     def __init__(self, out: Path | str):
-        import xarray
+        import h5netcdf
 
         from mpm.plots import dataset_of
-        from mpm.plots.view import View
 
         self.path = dataset_of(Path(out))
-        self.tree = xarray.open_datatree(self.path, engine="h5netcdf")
-        self.view = View(self.tree)
+        self.file = h5netcdf.File(self.path)
+
+    @cached_property
+    def tree(self) -> Any:
+        """All of it as an xarray.DataTree."""
+        import xarray
+
+        return xarray.open_datatree(self.path, engine="h5netcdf")
+
+    @cached_property
+    def view(self) -> Any:
+        """What figures see (mpm.plots.view)."""
+        from mpm.plots.view import View
+
+        return View(self.tree)
 
     def __enter__(self) -> "Results":
         return self
 
     def __exit__(self, *_: Any) -> None:
-        self.tree.close()
+        self.file.close()
+        if "tree" in self.__dict__:
+            self.tree.close()
 
     @property
     def dimension(self) -> Any:
         """The dimension of the scene, as configs say it."""
-        return (self.view.config.get("grid") or {}).get("dimension")
+        return (json.loads(self.file.attrs.get("config_resolved") or "{}").get("grid") or {}).get("dimension")
+
+    @property
+    def swept(self) -> bool:
+        """Whether there are more points than one."""
+        return bool(self.file.variables["status"].dimensions)
 
     def points(self, said: Iterable[str] = ()) -> list[Point]:
         """The points that are named; the one that stands for the sweep unless any is."""
@@ -63,6 +84,8 @@ class Results:
 
     def point(self, at: dict[str, int]) -> Point:
         """The point at a place."""
+        if not at:
+            return Point({}, "", "", Shots(self, {}))
         view = self.view
         words = view.named(at)
         plain = [f"{axis.name.rsplit('.', 1)[-1]}={axis.text(at[axis.dim])}" for axis in view.axes]
@@ -71,7 +94,7 @@ class Results:
 
     def places(self, text: str) -> list[dict[str, int]]:
         """What one POINT names."""
-        found = [dict(self.view.chosen)]
+        found = [dict(self.view.chosen) if self.swept else {}]
         for pair in filter(None, map(str.strip, text.split(","))):
             name, sign, value = map(str.strip, pair.partition("="))
             dim = self.dim(name)
@@ -116,20 +139,20 @@ class Shots:
     """Snapshots of one point. `len`, `times` [s], and `shots[k]`, which reads that one alone."""
 
     def __init__(self, results: Results, at: dict[str, int]):
-        groups, self.at = results.view.groups, at
-        self.grid, self.particles = (self.kept(groups.get(name), at) for name in ("grid", "particles"))
+        self.at = at
+        self.grid, self.particles = (self.kept(results.file.groups.get(name)) for name in ("grid", "particles"))
         self.entries: Any = None
         self.near: dict[str, tuple[int, np.ndarray]] = {}  # of each field the rows that were read last, from the first on
-        self.rows = None if self.particles is None else [np.asarray(self.particles[name].values) for name in ("row_start", "row_size")]
-        outside = next((group for group in map(groups.get, ("particles", "grid")) if group is not None and "file" in group), None)
-        if outside is not None and (file := str(outside["file"].isel({dim: at[dim] for dim in outside["file"].dims}).values)):
-            self.entries = elsewhere(results.path.parent / file)
+        self.rows = None if self.particles is None else [self.part(self.particles[name]) for name in ("row_start", "row_size")]
+        outside = next((group for group in map(results.file.groups.get, ("particles", "grid")) if group is not None and "file" in group.variables), None)
+        if outside is not None and (file := self.part(outside.variables["file"]).item()):
+            self.entries = elsewhere(results.path.parent / (file.decode() if isinstance(file, bytes) else file))
         here = [group for group in (self.particles, self.grid) if group is not None]
         self.times, self.numbers = np.zeros(0), np.zeros(0, int)
         if self.entries is not None:
             self.times = self.entries.times
         elif here:
-            self.times = np.asarray(here[0]["snapshot"].values, float)
+            self.times = np.asarray(here[0]["snapshot"][...], float)
             if self.rows is not None:
                 self.numbers = np.flatnonzero(self.rows[1])  # of a point that stopped early the last are empty
                 self.times = self.times[self.numbers]
@@ -137,10 +160,20 @@ class Shots:
                 self.numbers = np.arange(len(self.times))
 
     @staticmethod
-    def kept(group: Any, at: dict[str, int]) -> Any:
-        """A group whose fields lie in the dataset."""
-        there = group is not None and "snapshot" in group.dims and group.sizes["snapshot"] and "file" not in group
-        return group.isel({dim: index for dim, index in at.items() if dim in group.dims}) if there else None
+    def kept(group: Any) -> Any:
+        """Variables of a group whose fields lie in the dataset."""
+        there = group is not None and "snapshot" in group.variables and len(group.variables["snapshot"]) and "file" not in group.variables
+        return group.variables if there else None
+
+    def part(self, row: Any, **chosen: Any) -> np.ndarray:
+        """A variable at this point, and at what is chosen of its other dimensions."""
+        return np.asarray(row[tuple({**self.at, **chosen}.get(dim, slice(None)) for dim in row.dimensions) or ...])
+
+    @cached_property
+    def fields(self) -> dict[str, dict[str, Any]]:
+        """Variables of fields, of the grid and of particles."""
+        grid = {name: row for name, row in (self.grid or {}).items() if "snapshot" in row.dimensions and name != "snapshot"}
+        return {"grid": grid, "particles": {name: row for name, row in (self.particles or {}).items() if "obs" in row.dimensions}}
 
     def __len__(self) -> int:
         return len(self.times)
@@ -150,27 +183,26 @@ class Shots:
         """Coordinates of the grid's nodes by axis, the last direction first; none without fields on the grid."""
         if self.entries is not None:
             return self.entries.axes
-        return {str(dim): np.asarray(self.grid[dim].values) for dim in next(iter(self.grid.data_vars.values())).dims if dim != "snapshot"} if self.grid else {}
+        space = [dim for dim in next(iter(self.fields["grid"].values())).dimensions if dim not in (*self.at, "snapshot")] if self.grid else []
+        return {dim: np.asarray(self.grid[dim][...]) for dim in space}
 
     def __getitem__(self, k: int) -> Frame:
         if self.entries is not None:
             return self.entries[k]
         number = int(self.numbers[k])
-        grid = {} if self.grid is None else {str(name): row.isel(snapshot=number).values for name, row in self.grid.data_vars.items() if "snapshot" in row.dims}
-        particles = {}
-        if self.particles is not None:
+        grid, particles = {name: self.part(row, snapshot=number) for name, row in self.fields["grid"].items()}, {}
+        if self.rows is not None:
             begin, size = (int(values[number]) for values in self.rows)
-            rows = [(str(name), row) for name, row in self.particles.data_vars.items() if "obs" in row.dims]
-            particles = {name: self.read(name, row, begin, begin + size) for name, row in rows}
+            particles = {name: self.read(name, row, begin, begin + size) for name, row in self.fields["particles"].items()}
         return Frame(float(self.times[k]), grid, particles)
 
     def read(self, name: str, row: Any, begin: int, end: int) -> np.ndarray:
         """Rows of a field of particles. Whole chunks of the file are read and the last kept: the next snapshot often lies in the same."""
         first, values = self.near.get(name, (0, np.zeros(0)))
         if not first <= begin <= end <= first + len(values):
-            chunk = (row.encoding.get("chunksizes") or (1,))[0]
-            first, last = begin // chunk * chunk, min(-(-end // chunk) * chunk, row.sizes["obs"])
-            values = row.isel(obs=slice(first, last)).values
+            chunk = (row.chunks or (1,))[0]
+            first, last = begin // chunk * chunk, min(-(-end // chunk) * chunk, row.shape[0])
+            values = row[first:last]
             self.near[name] = first, values
         return values[begin - first : end - first]
 

@@ -14,6 +14,7 @@ status, compare, plan_report   what is there; same or not; what would be done
 The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.
 
 Further files
+    apart           a short-lived interpreter beside this one, for samples and pictures
     case_list       the points of a plan and the dimensions they stand on, as plain data
     collect_apart   the interpreter that collects a folder beside a sweep
     ids             the run ids of a sweep by number and the other way, 24 bytes a point

@@ -6,13 +6,13 @@ import numpy as np
 
 from mpm.config.schema_paths import Path
 from mpm.config.variation import Group, Parameter
-from mpm.sweep.designs import unit_sample
+from mpm.sweep.designs import sample_apart
 
 
 def columns(group: Group) -> list[list[Any]]:
     """The values of each parameter of a group along its dimension."""
     if group.form == "sample":
-        unit = unit_sample(group.design, group.size, len(group.parameters), group.seed)
+        unit = sample_apart(group.design, group.size, len(group.parameters), group.seed)
         return [spread(parameter, unit[:, index]).tolist() for index, parameter in enumerate(group.parameters)]
     return [parameter.values or even(parameter, group.size) for parameter in group.parameters]
 

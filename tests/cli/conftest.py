@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mpm.sweep import engine
+from mpm.sweep import apart, engine
 
 FAKES = str(Path(__file__).parents[1] / "fakes")
 if FAKES not in sys.path:
@@ -41,11 +41,14 @@ def write(tmp_path):
 @pytest.fixture
 def mpm(tmp_path, monkeypatch, capsys):
     """Run a command in this process with the fake runner and a figure that is one byte: exit code, stdout, stderr."""
+    import fake_plots
+
     plots = types.ModuleType("mpm.plots")
     plots.__path__ = [str(Path(__file__).parents[2] / "mpm" / "plots")]
     plots.overview = lambda tree, path: path.write_bytes(b"p")
     plots.figures = lambda out, names, path, svg: [Path(path or out / f"{name}.{'svg' if svg else 'png'}") for name in names or ["overview"]]
     monkeypatch.setitem(sys.modules, "mpm.plots", plots)
+    monkeypatch.setattr(apart, "apart", lambda code, *words: fake_plots.here(*words))
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "120")

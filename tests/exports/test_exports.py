@@ -1,6 +1,8 @@
 """Exports hold what the dataset holds, to float32: read back by the formats' own libraries where they are installed, by h5py and pandas always."""
 
 import csv
+import subprocess
+import sys
 
 import h5py
 import numpy as np
@@ -175,21 +177,24 @@ def test_parquet_and_zarr_read_what_the_dataset_holds(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("chunk", [1, 7, 10, 40])
-def test_rows_are_the_same_whatever_chunks_they_lie_in(chunk):
+def test_rows_are_the_same_whatever_chunks_they_lie_in(chunk, tmp_path):
     from mpm.opened import Shots
 
-    row, shots = xarray.DataArray(np.arange(40.0), dims="obs"), Shots.__new__(Shots)
-    row.encoding["chunksizes"], shots.near = (chunk,), {}
-    sizes = np.array([5, 8, 1, 12, 14])
-    ends = np.cumsum(sizes)
-    for k in (0, 1, 2, 3, 4, 2, 0, 4):
-        assert shots.read("a", row, int(ends[k] - sizes[k]), int(ends[k])).tolist() == list(range(ends[k] - sizes[k], ends[k]))
+    shots, sizes = Shots.__new__(Shots), np.array([5, 8, 1, 12, 14])
+    shots.near, ends = {}, np.cumsum(sizes)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        row = file.create_dataset("a", data=np.arange(40.0), chunks=(chunk,))
+        for k in (0, 1, 2, 3, 4, 2, 0, 4):
+            assert shots.read("a", row, int(ends[k] - sizes[k]), int(ends[k])).tolist() == list(range(ends[k] - sizes[k], ends[k]))
+
+
+def test_snapshots_of_a_run_need_no_xarray(folders, tmp_path):
+    """To import it takes longer than to write them."""
+    code = f"import sys, mpm; mpm.export({str(folders[2])!r}, to={str(tmp_path / 'a.vtkhdf')!r}); sys.exit('xarray' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0 and (tmp_path / "a.vtkhdf").exists()
 
 
 def test_exports_do_without_matplotlib(tmp_path, monkeypatch):
-    import subprocess
-    import sys
-
     fake(tmp_path, monkeypatch)
     code = f"import sys, mpm; mpm.export({str(tmp_path / 's')!r}, to={str(tmp_path / 'a.csv')!r}); sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
