@@ -95,10 +95,8 @@ def nearest(point: Point, when: float) -> Any:
 
 def canvas(found: Results, shown: list[Point], of: str | None, inches: list[float] | None, columns: int) -> tuple[Any, list[Any]]:
     """A figure with a panel for each point (a row each where there are several columns), and one colour bar."""
-    from matplotlib.figure import Figure
-
     from mpm.movies.stage import Stage, looks
-    from mpm.plots.style import styled
+    from mpm.plots.style import Picture, styled
     from mpm.plots.words import wrapped
 
     look = looks(found, shown, of)
@@ -110,8 +108,8 @@ def canvas(found: Results, shown: list[Point], of: str | None, inches: list[floa
     with styled():
         if inches is None:
             each = 9.3 / across
-            inches = [10.6, min(24.0, max(2.6, each * look.aspect + 0.9) * down + 0.9)]
-        fig = Figure(figsize=inches, layout="constrained", dpi=DPI)
+            inches = [10.6, min(24.0, max(1.5, each * look.aspect + 0.9) * down + 0.9)]
+        fig = Picture(figsize=inches, layout="constrained", dpi=DPI)
         fig.suptitle(wrapped(title, int(9.5 * inches[0])), fontsize=10.5, x=0.01, ha="left")
         panels = list(fig.subplots(down, across, squeeze=False, sharex=True, sharey=True).ravel())
         stages = [Stage(ax, look, names[k // columns if columns > 1 else k]) for k, ax in enumerate(panels) if k < len(shown) * columns]

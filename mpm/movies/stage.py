@@ -129,7 +129,8 @@ class Stage:
         ax.set_aspect("equal" if look.dimension != 1 else "auto")
         ax.grid(False)
         ax.set_xlim(*look.length(look.box[:, 0]))
-        ax.set_ylim(*look.length(look.box[:, 1]))
+        low, high = look.mappable.get_clim()
+        ax.set_ylim(*(look.length(look.box[:, 1]) if look.dimension != 1 else (low - 0.06 * (high - low), high + 0.06 * (high - low))))
         if look.dimension != 1:
             draw_walls(ax, look.config, self.place, look.mirrored)
         if look.mirrored:
@@ -141,8 +142,8 @@ class Stage:
         if foot:
             self.ax.tick_params(labelbottom=True)
             self.ax.set_xlabel(words.with_units(letters[0].strip() or "seen from the side", look.length.units))
-        if left and letters[1].strip():
-            self.ax.set_ylabel(words.with_units(letters[1], look.length.units))
+        if left and (letters[1].strip() or look.dimension == 1):
+            self.ax.set_ylabel(words.with_units(letters[1], look.length.units) if look.dimension != 1 else look.label)
 
     def place(self, x: np.ndarray) -> np.ndarray:
         """Where places (K, D) [m] lie on the panel (K, 2)."""
@@ -164,6 +165,9 @@ class Stage:
     def particles(self, frame: Any, values: np.ndarray, lines: bool) -> None:
         """A dot a particle, about as large as its share of the space."""
         look, place = self.look, flat(frame.particles["position"], self.look.dimension)
+        if look.dimension == 1:
+            self.profile(place[:, 0], values)
+            return
         colours = look.mappable.to_rgba(values)
         if look.mirrored:
             place, colours = np.concatenate([place * [-1, 1, 1], place]), np.concatenate([colours, colours])
@@ -177,6 +181,10 @@ class Stage:
         if look.dimension == 3 and size[0] > BALLS:
             places, colours, size = self.balls(places, colours, size[0])
         self.drawn.append(self.ax.scatter(*places.T, c=colours, s=size, lw=0, zorder=3, rasterized=True))
+
+    def profile(self, x: np.ndarray, values: np.ndarray) -> None:
+        """In 1-D values over the line."""
+        self.drawn.append(self.ax.scatter(self.look.length(x), values, c=self.look.mappable.to_rgba(values), s=14, lw=0))
 
     def balls(self, places: np.ndarray, colours: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Each particle as three dots, one on the other: its rim, itself and a light from above on the left. Those behind stay behind."""
@@ -195,14 +203,14 @@ class Stage:
         return float(np.clip(0.6 * width * height / max(count, 1), 0.3, 60.0))
 
     def on_grid(self, frame: Any, values: np.ndarray, lines: bool) -> None:
-        """A field on the grid: in 1-D a line of dots, in 3-D the slice through the middle."""
+        """A field on the grid: in 3-D the slice through the middle."""
         look = self.look
         axes = list(look.axes.values())
         if values.ndim == 3:
             values, axes = values[:, values.shape[1] // 2], [axes[0], axes[2]]
         across, up = look.length(axes[-1]), look.length(axes[0]) if values.ndim == 2 else None
         if up is None:
-            self.drawn.append(self.ax.scatter(across, np.zeros(len(across)), c=look.mappable.to_rgba(values), s=60, lw=0))
+            self.profile(axes[0], values)
             return
         if look.mirrored:
             across, values = np.concatenate([-across[:0:-1], across]), np.concatenate([values[:, :0:-1], values], axis=1)

@@ -33,6 +33,7 @@ Further files
     view        what a dataset holds, as figures ask for it
 """
 
+import importlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -114,8 +115,8 @@ def figures(
 
     names   of KINDS, one or several; the overview unless given
     path    the file of a single figure; else <folder>/<name>.png (.svg with `svg`)
-    of      the final that `finals` and the overview draw;  over: the swept parameter along them
-    Raises UnknownFigure for a name, FileNotFoundError where there is no dataset.
+    of      the final that `finals` and the overview draw, or the field of a snapshot;  over: the swept parameter along finals
+    Raises UnknownFigure for a name, FileNotFoundError where there is no dataset, ValueError for a snapshot where none can be drawn (see mpm.movies.still).
     """
     wanted = [names or "overview"] if names is None or isinstance(names, str) else list(names) or ["overview"]
     for name in wanted:
@@ -126,10 +127,13 @@ def figures(
     if path is not None and Path(path).suffix.lower() not in FORMATS:
         raise UnknownFigure(f"{path}: a figure is written as {', '.join(FORMATS)}")
     dataset = dataset_of(Path(out))
-    tree, suffix = _open(dataset), ".svg" if svg else ".png"
+    tree, suffix = _open(dataset) if wanted != ["snapshot"] else None, ".svg" if svg else ".png"
     targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]
     for name, target in zip(wanted, targets, strict=True):
-        _finish(_draw(tree, name, of, over), target)
+        if name == "snapshot":
+            importlib.import_module("mpm.movies").still(dataset, (), target, of)  # a room above this one: there is one drawing of particles and fields
+        else:
+            _finish(_draw(tree, name, of, over), target)
     return targets
 
 
@@ -158,10 +162,10 @@ def drawn(tree: Any, name: str) -> Any:
 
 def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) -> Any:
     """A figure by its name."""
-    from mpm.plots import layouts, snapshot
+    from mpm.plots import layouts
     from mpm.plots.style import settle
 
-    kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals, "snapshot": snapshot.snapshot}
+    kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals}
     fig = kinds[name](_viewed(tree, of, over))
     settle(fig.axes)
     return fig

@@ -40,7 +40,9 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
         ax.plot(x.positions[order], row[order], "-o", color=colour, clip_on=False, zorder=3)
     doubts = hollow(ax, view, x, lines, at, shown, colours)
     x.apply(ax)
-    ax.set_ylabel(words.wrapped(view.label(name, scale.units), 40))
+    place = ax.get_subplotspec()
+    letters = 28 if place is not None and place.get_gridspec().nrows > 1 else 40
+    ax.set_ylabel(words.wrapped(view.label(name, scale.units), letters))
     wide(ax, shown, name)
     values_key = [] if lines is None or not key else keys(ax, lines, colours)
     reasons_key = marks(ax, view, name, x, lines, at, values, colours)

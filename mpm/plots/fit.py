@@ -8,6 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from mpm.plots import words
 from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, Plain, figure, styled
+from mpm.records.variables import describe
 from mpm.text import amount
 
 
@@ -20,13 +21,13 @@ def draw(tree: Any) -> Any:
     with styled():
         rows = len(units)
         fig = figure(f"Fit: {tree.attrs['title']}", 3.1 * rows + 2.8)
-        grid = fig.add_gridspec(rows + 1, 2 * columns, height_ratios=[1.15] * rows + [1])
+        grid = fig.add_gridspec(rows + 1, 3 * columns, height_ratios=[1.15] * rows + [1])
         for row, unit in enumerate(units):
-            model = fig.add_subplot(grid[row, : columns + (columns + 1) // 3])
-            left = fig.add_subplot(grid[row, columns + (columns + 1) // 3 :])
+            model = fig.add_subplot(grid[row, : 2 * columns])
+            left = fig.add_subplot(grid[row, 2 * columns :])
             panel(model, left, root, curves, unit)
         for k in range(parameters):
-            ax = fig.add_subplot(grid[rows, k * 2 * columns // parameters : (k + 1) * 2 * columns // parameters])
+            ax = fig.add_subplot(grid[rows, k * 3 * columns // parameters : (k + 1) * 3 * columns // parameters])
             valley(ax, root, profile, k)
     return fig
 
@@ -51,7 +52,7 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
                 continue
             said = said.partition(":")[0]
         ax.plot(clock(times), scale(values), "o", ms=4.5, mfc="white" if held else colour, mec=colour, label=said)
-        ax.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("temperature" if unit == "K" else name, scale.units))
+        ax.set(xlabel=f"time [{clock.units}]", ylabel=words.wrapped(words.with_units(quantity(str(root["variable"].values[k])), scale.units), 30))
         if len(times) > 1:
             left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
             left.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("difference", scale.units.replace("°C", "K")))
@@ -72,6 +73,16 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
     if numbers:
         place = left if not left.lines else ax
         place.text(0.02, 0.95, "\n".join(numbers), transform=place.transAxes, va="top", fontsize=SMALL)
+
+
+def quantity(name: str) -> str:
+    """A result in words: `temperature` of every probe, else its long name."""
+    if words.is_temperature(name):
+        return "temperature"
+    try:
+        return words.short(describe(name).long_name)
+    except KeyError:
+        return name.replace("_", " ")
 
 
 def with_unit(value: float, unit: str, digits: int) -> str:

@@ -1,5 +1,6 @@
 """Panels of observables over time: a few points of the sweep, coloured by the swept value, with the measured curve as dots."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from mpm.plots.view import Axis, View, spread
 MOST_LINES = 5
 DOTS = ("o", "s", "D", "^", "v")
 TEMPERATURE = "Temperature"
+LATER = 1.3  # of the run's end
 
 
 def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[str, int]) -> None:
@@ -39,6 +41,8 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     most = scale.factor * view.largest(view.series[names[0]].attrs.get("units", "1"))
     calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]), floor=1e-12 * most)
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
+    if dots and ax.get_xlim()[1] > LATER * clock(time[-1]):
+        ax.set_xlim(right=1.03 * clock(time[-1]))  # what was measured long after the run's end answers nothing
     kinds = entries(view, names, lines) if len(names) > 1 or dots else []
     cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
     values = []
@@ -93,7 +97,12 @@ def shared_label(view: View, names: list[str]) -> str:
     """What the series of a panel have in common."""
     if len(names) == 1:
         return words.title_case(words.short(view.long_name(names[0])))
-    return words.title_case(names[0].split("_")[0])
+    family = names[0].split("_")[0]
+    if len(family) > 1:
+        return words.title_case(family)
+    ends = zip(*(reversed(words.short(view.long_name(name)).split(" ")) for name in names), strict=False)
+    common = [each[0] for each in itertools.takewhile(lambda each: len(set(each)) == 1, ends)]  # of the smallest and the largest volume ratio det F
+    return words.title_case(" ".join(reversed(common))) or family
 
 
 def calm(ax: Any, values: np.ndarray, floor: float) -> None:

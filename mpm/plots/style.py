@@ -4,6 +4,7 @@ Figures are made without pyplot: no window, no global state, safe in any process
 """
 
 import contextlib
+import io
 import math
 import os
 import secrets
@@ -78,9 +79,19 @@ def styled() -> Iterator[None]:
         yield
 
 
+class Picture(Figure):
+    """A figure without pyplot, which a notebook shows all the same."""
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        with styled():
+            self.savefig(buffer, format="png", dpi=90)
+        return buffer.getvalue()
+
+
 def figure(title: str, height: float) -> Figure:
     """An empty figure with its title."""
-    fig = Figure(figsize=(WIDTH, height), layout="constrained")
+    fig = Picture(figsize=(WIDTH, height), layout="constrained")
     fig.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.04, hspace=0.06)
     fig.suptitle(title if len(title) <= LONGEST else title[: LONGEST - 1] + "…", x=0.012, ha="left")
     return fig
