@@ -1,6 +1,7 @@
-"""The thumbnails of docs/gallery: python docs/sphinx/gallery.py RESULTS [SCENE...]
+"""The pictures of docs/gallery: python docs/sphinx/gallery.py SHEET [NAME...]
 
-RESULTS/<scene> holds what `mpm sweep` or `mpm run` made of configs/scenes/<scene>.yaml. Its overview is drawn, made 560 dots wide, and written with 48 colours.
+SHEET is what `python -m mpm.study.contact_sheet SHEET scenes` left. The picture of a scene is that of its fit, else its overview; of the other kinds of figures
+one each; all are made 560 dots wide with 48 colours. Movies are short and small.
 """
 
 import sys
@@ -8,22 +9,37 @@ from pathlib import Path
 
 from PIL import Image
 
-from mpm.plots import figures
+import mpm
+from mpm.starting.scenes import scenes
 
 GALLERY = Path(__file__).parents[1] / "gallery"
 WIDTH, COLOURS = 560, 48
+KINDS = {"finals": "loaf/finals.png", "series": "steak_flip/series.png", "snapshot": "loaf/snapshot.png", "sensitivity": "slump/sensitivity.png"}
+MOVIES = {"loaf_movie": ("loaf", ["beta=5", "beta=50"], 3), "slump_movie": ("slump", [], 3)}  # scene, points, one snapshot of so many
 
 
-def thumbnail(results: Path, scene: str) -> int:
-    """Bytes of a scene's thumbnail."""
-    drawn = figures(results / scene, [], results / scene / "thumbnail.png", False)[0]
+def thumbnail(drawn: Path, name: str) -> None:
+    """A small picture."""
     with Image.open(drawn) as picture:
         small = picture.convert("RGB").resize((WIDTH, round(picture.height * WIDTH / picture.width)), Image.Resampling.LANCZOS)
+    small.quantize(COLOURS).save(GALLERY / f"{name}.png", optimize=True)
+
+
+def main(sheet: Path, names: list[str]) -> None:
+    """Make those that are named, or all."""
     GALLERY.mkdir(exist_ok=True)
-    small.quantize(COLOURS).save(GALLERY / f"{scene}.png", optimize=True)
-    return (GALLERY / f"{scene}.png").stat().st_size
+    folders = {name: sheet / f"scenes_{name}" for name in scenes()}
+    pictures = {name: next((folder / file for file in ("fit.png", "overview.png") if (folder / file).exists()), None) for name, folder in folders.items()}
+    pictures |= {name: sheet / f"scenes_{file}" for name, file in KINDS.items()}
+    for name, picture in pictures.items():
+        if picture is not None and name in (names or pictures):
+            thumbnail(picture, name)
+    for name, (scene, points, every) in MOVIES.items():
+        if name in (names or MOVIES):
+            mpm.movie(folders[scene], points, GALLERY / f"{name}.gif", every=every, size=(480, 300))
+    for path in sorted(GALLERY.glob("*")):
+        print(path.stat().st_size, path.name)
 
 
 if __name__ == "__main__":
-    for name in sys.argv[2:] or sorted(path.name for path in Path(sys.argv[1]).iterdir() if path.is_dir()):
-        print(name, thumbnail(Path(sys.argv[1]), name))
+    main(Path(sys.argv[1]), sys.argv[2:])

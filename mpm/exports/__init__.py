@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.opened import Results, UnknownPoint
+from mpm.plots import place
 
 KINDS = {".vtkhdf": "vtkhdf", ".usd": "usd", ".usda": "usd", ".usdc": "usd", ".csv": "tables", ".parquet": "tables", ".zarr": "zarr"}
 
@@ -39,6 +40,7 @@ def export(out: Path | str, points: str | Iterable[str] = (), to: Path | str | N
         target = Path(to) if to is not None else found.path.with_suffix(".vtkhdf")
         if target.suffix.lower() not in KINDS:
             raise ExportError(f"{target}: the suffix says the format; there are {', '.join(KINDS)}")
+        place(target)
         writer = importlib.import_module(f"mpm.exports.{KINDS[target.suffix.lower()]}")
         words = [points] if isinstance(points, str) else list(points)
         if KINDS[target.suffix.lower()] in ("tables", "zarr"):
@@ -49,8 +51,8 @@ def export(out: Path | str, points: str | Iterable[str] = (), to: Path | str | N
         for point in chosen:
             if not len(point.shots):
                 raise UnknownPoint(f"{point.label or found.path}: there are no snapshots; output.snapshots in the config asks for them")
-            place = target if len(chosen) == 1 else target.with_name(f"{target.stem}-{point.stem}{target.suffix}")
-            written += writer.write(found, point, place)
+            file = target if len(chosen) == 1 else target.with_name(f"{target.stem}-{point.stem}{target.suffix}")
+            written += writer.write(found, point, file)
         return written
 
 

@@ -4,6 +4,7 @@ Particles are PolyData. Every step is one part of its own points; all steps shar
 has points. Fields on the grid are ImageData whose arrays have the step as their first dimension; nodes without material are NaN.
 """
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,10 @@ def put(path: Path, fill: Any) -> Path:
             root.attrs["Version"] = np.array([2, 0], np.int64)
             fill(root)
         settle()
+    except OSError as error:
+        if error.errno and not error.filename:  # h5py does not say which file
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
+        raise
     finally:
         temporary.unlink(missing_ok=True)
     return path

@@ -43,11 +43,14 @@ def movie(
     every    of so many snapshots one is shown;  speed: seconds of the run a second of the movie; LONGEST seconds in all unless given
     size     pixels;  told(done, frames) hears of progress
     """
+    from mpm.plots import place
+
     with Results(out) as found:
         target = Path(to) if to is not None else found.path.with_name("movie.webp")
         if target.suffix.lower() not in MOVIES:
             raise MovieError(f"{target}: a movie is written as {', '.join(MOVIES)}")
         shown = seen(found, points)
+        place(target)
         times = shown[0].shots.times[:: max(1, every)]
         span = float(times[-1] - times[0])
         each = (span / speed if speed else min(LONGEST, max(len(times) / RATE, 1.0))) / max(1, len(times) - 1)  # s a frame
@@ -57,6 +60,7 @@ def movie(
 
 def still(out: Path | str, points: str | Iterable[str] = (), to: Path | str | None = None, of: str | None = None, at: Iterable[float] = ()) -> Any:
     """A picture of a point, or of several, at some times [s] (four, evenly spread, unless given); the figure, and its file where `to` is given."""
+    from mpm.plots import place
     from mpm.plots.style import save
     from mpm.plots.view import spread
 
@@ -71,7 +75,7 @@ def still(out: Path | str, points: str | Iterable[str] = (), to: Path | str | No
         if to is not None:
             if Path(to).suffix.lower() not in STILLS:
                 raise MovieError(f"{to}: a picture is written as {', '.join(STILLS)}")
-            save(fig, to)
+            save(fig, place(Path(to)))
         return fig
 
 

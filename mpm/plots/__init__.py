@@ -33,7 +33,9 @@ Further files
     view        what a dataset holds, as figures ask for it
 """
 
+import errno
 import importlib
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -128,7 +130,7 @@ def figures(
         raise UnknownFigure(f"{path}: a figure is written as {', '.join(FORMATS)}")
     dataset = dataset_of(Path(out))
     tree, suffix = _open(dataset) if wanted != ["snapshot"] else None, ".svg" if svg else ".png"
-    targets = [Path(path) if path is not None else dataset.parent / f"{name}{suffix}" for name in wanted]
+    targets = [place(Path(path) if path is not None else dataset.parent / f"{name}{suffix}") for name in wanted]
     for name, target in zip(wanted, targets, strict=True):
         if name == "snapshot":
             importlib.import_module("mpm.movies").still(dataset, (), target, of)  # a room above this one: there is one drawing of particles and fields
@@ -138,13 +140,37 @@ def figures(
 
 
 def dataset_of(out: Path) -> Path:
-    """The dataset file of a folder: sweep.nc, else run.nc."""
+    """The dataset file of a folder: sweep.nc, else run.nc. NoDataset where there is none, or one that is not as it was written."""
     if out.is_file():
-        return out
+        return sound(out)
     for name in DATASETS:
         if (out / name).exists():
-            return out / name
+            return sound(out / name)
     raise NoDataset(f"{visible(str(out))} holds no {' and no '.join(DATASETS)}; give the folder that `mpm sweep` or `mpm run` wrote")
+
+
+def place(path: Path) -> Path:
+    """A file to write, once its folder is found to be there and to be one that can be written in."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
+    if not os.access(path.parent, os.W_OK):
+        raise PermissionError(errno.EACCES, f"nothing can be written there; name another file than {path.name} with -o", str(path.parent))
+    return path
+
+
+def sound(path: Path) -> Path:
+    """A file, if it holds results."""
+    import h5py
+
+    try:
+        with h5py.File(path) as file:
+            if "status" in file:
+                return path
+    except OSError as error:
+        if error.errno:
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
+        raise NoDataset(f"{visible(str(path))} cannot be read, so it is no dataset, or a damaged one; `mpm collect` makes that of a sweep again") from None
+    raise NoDataset(f"{visible(str(path))} holds no results of `mpm sweep` or `mpm run`")
 
 
 def _open(path: Path) -> Any:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.opened import Results
+from mpm.plots import place
 from mpm.reports.content import content, shown
 from mpm.reports.studies import studies
 
@@ -35,7 +36,7 @@ def report(out: Path | str, to: Path | str | None = None) -> Path:
     Raises FileNotFoundError where there is no dataset.
     """
     with Results(out) as found:
-        target = Path(to) if to is not None else found.path.with_name("report.html")
+        target = place(Path(to) if to is not None else found.path.with_name("report.html"))
         text = page(found)
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:

@@ -74,7 +74,7 @@ def reason(line: dict) -> str:
 
 def said(found: dict[str, Any]) -> str:
     """The same in words."""
-    words = [f"{found['out']}: {found['name']}, {found['points']} points: {told(found['counts'], found['warnings'])}"]
+    words = [f"{found['out']}: {found['name']}, {found['points']} point{'s' if found['points'] != 1 else ''}: {told(found['counts'], found['warnings'])}"]
     for row in found["warned"]:
         words.append(f"  {row['count']} x warning: {row['kind']}, as {row['example'] or 'the point'}; {row['advice']}")
     for failure in found["failures"]:
