@@ -19,6 +19,7 @@ from mpm.text import visible
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
 BESIDE = 0.6  # of the particles' extent
 BALLS = 3.0  # square points of a dot that is large enough to be shaded as a ball
+LETTERS = 14  # of a title in an inch of its panel
 SAMPLES = 12  # snapshots that the limits of colour and space are taken from
 SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
 
@@ -160,7 +161,8 @@ class Stage:
         values = look.scale(valued(frame, look.field, look.on_grid))
         (self.on_grid if look.on_grid else self.particles)(frame, values, lines)
         when = f"t = {words.number(float(look.clock(frame.time)))} {look.clock.units}".strip()
-        self.ax.set_title(f"{self.named}, {when}" if self.named else when, fontsize=8.5)
+        text, letters = f"{self.named}, {when}" if self.named else when, int(self.ax.get_position().width * self.ax.figure.get_figwidth() * LETTERS)
+        self.ax.set_title(text if len(text) <= letters else f"{words.wrapped(self.named, letters)}\n{when}", fontsize=8.5)
 
     def particles(self, frame: Any, values: np.ndarray, lines: bool) -> None:
         """A dot a particle, about as large as its share of the space."""
