@@ -7,7 +7,6 @@ import typer
 from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, again, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
-from mpm_cli.unseen import unseen
 
 RERUN = ("failed", "stale", "all")
 
@@ -38,6 +37,7 @@ SCHEDULER = "Run on the Dask cluster at this address, e.g. tcp://host:8786; loca
 RESULTS = "How a cluster returns results. wire: over the network; shared: workers write into OUT, which all of them see under one path."
 AGAIN = "Rerun finished points. failed: every point that is not ok; stale: results from other source code; all: everything."
 RETRIES = "Retries of a killed or timed-out point.  [default: 3 if killed, 0 if timed out]"
+DRAW = "sys.modules['dask'] = None; from mpm_cli.sweep import overview; overview(*sys.argv[1:])"  # dask: see mpm_cli.unseen
 Rerun = Annotated[str | None, typer.Option(metavar="failed|stale|all", parser=which, help=AGAIN, show_default=False)]
 
 
@@ -107,7 +107,7 @@ def draw(result: Any) -> Any:
         return picture
     from mpm.sweep.apart import apart
 
-    done = apart("from mpm_cli.sweep import overview; overview(*sys.argv[1:])", str(dataset), str(picture))
+    done = apart(DRAW, str(dataset), str(picture))
     if done.returncode < 0:
         warn(f"the figure was not drawn: its process ended by signal {-done.returncode}; `mpm plot {result.out} -o {picture}` tries again")
     return picture if done.returncode == 0 else None
@@ -116,13 +116,12 @@ def draw(result: Any) -> Any:
 def overview(dataset: str, picture: str) -> None:
     """Draw sweep.png in a process of its own (exit code 1 where that fails): xarray and matplotlib would double what a sweep's process takes."""
     try:
-        with unseen("dask"):
-            import xarray
+        import xarray
 
-            from mpm.plots import overview as draw
+        from mpm.plots import overview as draw
 
-            with xarray.open_datatree(dataset, engine="h5netcdf") as tree:  # reads what is drawn; all fields of a large sweep would take gigabytes
-                draw(tree, Path(picture))
+        with xarray.open_datatree(dataset, engine="h5netcdf") as tree:  # reads what is drawn; all fields of a large sweep would take gigabytes
+            draw(tree, Path(picture))
     except Exception as error:  # the results are there and sound; a figure that fails is told, and does not hide them
         internal(error, "the figure failed")
         raise SystemExit(1) from None

@@ -17,4 +17,5 @@ def unseen(*modules: str) -> Iterator[None]:
         yield
     finally:
         for module in hidden:
-            del sys.modules[module]
+            if sys.modules.get(module, module) is None:  # an import that failed may have taken it out
+                del sys.modules[module]

@@ -39,7 +39,7 @@ class Axis:
         named = str(attrs.get("long_name", "")).lower().startswith("temperature")  # a parameter of the user's own
         scale = words.scale(raw, units, words.is_temperature_path(path) or named)
         values = scale(raw)
-        log = log_spaced(values) if log is None else bool(log and (values > 0).all())
+        log = log_spaced(values) and not scale.shift if log is None else bool(log and (values > 0).all())
         letter = words.symbol(name)
         title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
         return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
@@ -73,7 +73,7 @@ class Axis:
 
     def says(self, index: int) -> str:
         """`κ = 0.35 W/m/K`."""
-        return f"{words.symbol(self.name) or self.name.rsplit('.', 1)[-1]} = {self.text(index)} {self.units}".strip()
+        return f"{words.symbol(self.name) or self.name.rsplit('.', 1)[-1].replace('_', ' ')} = {self.text(index)} {self.units}".strip()
 
     def apply(self, ax: Any) -> None:
         """Scale, ticks and label of the horizontal axis."""

@@ -78,9 +78,9 @@ def keys(ax: Any, lines: Axis, colours: list[Any]) -> list[list[Any]]:
 
 
 def wide(ax: Any, values: np.ndarray, name: str) -> None:
-    """A logarithmic vertical axis where the values are positive and span a wide range, and for errors."""
+    """A logarithmic vertical axis where the values are positive and span a wide range, and for errors; not for degrees, whose zero is a convention."""
     finite = values[np.isfinite(values)]
-    if finite.size and (finite > 0).all() and (name.startswith("error_") or finite.max() / finite.min() > LOG_RATIO):
+    if finite.size and not words.is_temperature(name) and (finite > 0).all() and (name.startswith("error_") or finite.max() / finite.min() > LOG_RATIO):
         ax.set_yscale("log")
         plain_ticks(ax.yaxis)
 

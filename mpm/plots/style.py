@@ -22,7 +22,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import Formatter, FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from mpm.plots.words import number, numbers
+from mpm.plots.words import number, numbers, wrapped
 from mpm.text import visible
 
 WIDTH, DPI = 1600 / 150, 150
@@ -30,7 +30,8 @@ INK, QUIET, FAINT = "#222222", "#6b6b6b", "#d9d9d9"
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe and Ito (2008)
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)), (0, (3, 1, 1, 1, 1, 1)))
 SMALL, HEADING = 9, "heading"
-LONGEST = 110  # letters of a title that fit
+LONGEST = 150  # letters of a title
+LINE = 84  # letters of a line of it
 SMALLEST, LARGEST = 1e-3, 1e5  # of an axis in plain numbers
 MARKS = ("x", "+", "1", "2", "3", "4")
 STYLE = {
@@ -93,7 +94,8 @@ def figure(title: str, height: float) -> Figure:
     """An empty figure with its title."""
     fig = Picture(figsize=(WIDTH, height), layout="constrained")
     fig.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.04, hspace=0.06)
-    fig.suptitle(title if len(title) <= LONGEST else title[: LONGEST - 1] + "…", x=0.012, ha="left")
+    title = title if len(title) <= LONGEST else title[: LONGEST - 1] + "…"
+    fig.suptitle(title if len(title) <= LINE else wrapped(title, LINE), x=0.012, ha="left")
     return fig
 
 

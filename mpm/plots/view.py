@@ -130,9 +130,9 @@ class View:
         return sorted(found, key=lambda name: name != self.wanted and name not in asked and (self.round_off(name) or self.constant(name)))
 
     def constant(self, name: str) -> bool:
-        """Whether several points have the same number."""
+        """Whether several points have the same number, to a part in a million."""
         values = self.root[name].values[np.isfinite(self.root[name].values)]
-        return bool(len(values) > 1 and np.ptp(values) == 0)
+        return bool(len(values) > 1 and np.ptp(values) <= 1e-6 * np.abs(values).max())
 
     def round_off(self, name: str) -> bool:
         """Whether a final is round-off: an error of the digits themselves, or the kinetic energy of what has come to rest."""

@@ -45,11 +45,12 @@ def test_the_same_again_is_quick_and_needs_no_numba(mpm, write, tmp_path):
 
 
 def test_a_sweep_leaves_numba_to_its_workers(write, tmp_path):
-    """Its own process stays small: kernels and what they need are loaded where points run."""
+    """Its own process stays small: kernels and what they need are loaded where points run, and the picture is drawn by another."""
     fakes = str(Path(__file__).parents[1] / "fakes")
     code = f"import sys; sys.path.insert(0, {fakes!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'\n"
-    code += f"from mpm_cli.main import main; code = main(['sweep', {write([0.2])!r}, '-j', '1', '-q']); print(code, 'numba' in sys.modules)"
-    assert fresh(code, tmp_path)[0].endswith("0 False\n")
+    code += f"from mpm_cli.main import main; code = main(['sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']); "
+    code += "print(code, sorted({'numba', 'xarray', 'pandas', 'matplotlib'} & set(sys.modules)))"
+    assert fresh(code, tmp_path)[0].endswith("0 []\n") and (tmp_path / "s/sweep.png").stat().st_size > 1000
 
 
 def test_json_is_one_document_and_talk_goes_to_stderr(mpm, write):

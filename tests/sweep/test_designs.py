@@ -1,5 +1,7 @@
 """Samples of the unit cube: seeds, growth, evenness."""
 
+import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -34,3 +36,9 @@ def test_evenness():
 def test_unknown_design():
     with pytest.raises(ValueError, match="no design"):
         unit_sample("grid", 3, 2, 0)
+
+
+def test_a_process_that_must_stay_small_asks_another():
+    code = "import sys; from mpm.sweep.designs import sample_apart as made; print(repr(made('sobol', 5, 2, 3).tolist()), 'scipy.stats' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said == f"{unit_sample('sobol', 5, 2, 3).tolist()!r} False\n"
