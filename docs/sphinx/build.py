@@ -39,7 +39,7 @@ def outward(text: str, folder: str) -> str:
 
 def stays(target: str, folder: str) -> bool:
     """Whether a link is to a page or picture that is gathered."""
-    return target.endswith((".md", ".png")) and not target.startswith("../") and "/" not in target.removeprefix("gallery/")
+    return target.endswith((".md", ".png", ".gif")) and not target.startswith("../") and "/" not in target.removeprefix("gallery/")
 
 
 def gallery(text: str) -> str:
@@ -56,7 +56,7 @@ def gather(into: Path) -> None:
     made["gallery"] = gallery(made["gallery"])
     for name, text in made.items():
         (into / f"{name}.md").write_text(outward(text, "docs"), encoding="utf-8")
-    for path in [*DOCS.glob("*.png"), *DOCS.glob("*/*.png")]:
+    for path in [*DOCS.glob("*.png"), *DOCS.glob("gallery/*")]:
         target = into / path.relative_to(DOCS)
         target.parent.mkdir(exist_ok=True)
         shutil.copyfile(path, target)

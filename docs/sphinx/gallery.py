@@ -1,7 +1,7 @@
 """The pictures of docs/gallery: python docs/sphinx/gallery.py SHEET [NAME...]
 
-SHEET is what `python -m mpm.study.contact_sheet SHEET scenes` left. The picture of a scene is that of its fit, else its overview; of the other kinds of figures
-one each; all are made 560 dots wide with 48 colours. Movies are short and small.
+SHEET is what `python -m mpm.benchmarks.contact_sheet SHEET scenes` left. The picture of a scene is that of its fit, else its overview; of the other kinds of
+figures one each; all are made 560 dots wide with 48 colours. Movies are short and small. report.png is a screenshot of `mpm report`, made by hand.
 """
 
 import sys
@@ -30,6 +30,7 @@ def main(sheet: Path, names: list[str]) -> None:
     GALLERY.mkdir(exist_ok=True)
     folders = {name: sheet / f"scenes_{name}" for name in scenes()}
     pictures = {name: next((folder / file for file in ("fit.png", "overview.png") if (folder / file).exists()), None) for name, folder in folders.items()}
+    del pictures["loaf"]  # docs/loaf.png, which the README shows
     pictures |= {name: sheet / f"scenes_{file}" for name, file in KINDS.items()}
     for name, picture in pictures.items():
         if picture is not None and name in (names or pictures):

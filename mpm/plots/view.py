@@ -135,10 +135,12 @@ class View:
         return bool(len(values) > 1 and np.ptp(values) <= 1e-6 * np.abs(values).max())
 
     def round_off(self, name: str) -> bool:
-        """Whether a final is round-off: an error of the digits themselves, or the kinetic energy of what has come to rest."""
+        """Whether a final is round-off: an error of the digits themselves, books that are right, or the kinetic energy of what has come to rest."""
         most, values = 0.0, np.nanmax(np.abs(self.root[name].values), initial=0.0)
         if name.startswith("error_"):
             return bool(values < 1e-13 * self.largest(self.root[name].attrs.get("units", "1")))
+        if name.endswith("_ledger"):
+            return bool(values < 1e-9 * self.largest(self.root[name].attrs.get("units", "1")))
         if self.series is not None and name in self.series and name.startswith(("energy", "momentum", "velocity")):
             most = max(np.nanmax(np.abs(self.series[name].values), initial=0.0), 1e-6 * self.largest(self.series[name].attrs.get("units", "1")))
         return bool(values < 1e-9 * most)

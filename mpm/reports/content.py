@@ -51,7 +51,8 @@ def varied(axis: Any, view: View) -> dict[str, Any]:
 
 def points(view: View) -> dict[str, Any]:
     """A row a point: swept values, status, finals in the units of the figures."""
-    names, columns, cells = view.finals[:MOST], [], []
+    told = [name for name in view.finals if not view.round_off(name)]
+    names, columns, cells = (told or view.finals)[:MOST], [], []
     shape = view.status.shape
     axes = (view.parameters if view.design is not None else view.axes) if view.dims else []
     for axis in axes:
