@@ -108,11 +108,15 @@ def test_load(core, kind, solver):
 
 
 def test_tables_hold_the_whole_menu():
-    assert set(menus.EXCHANGE) == set(scaling.EXCHANGE) == set(boundary.EXCHANGES) == set(EXCHANGES)
+    assert set(menus.EXCHANGE) == set(boundary.EXCHANGES) == set(EXCHANGES)
     assert set(menus.LOAD) == set(loads.LOADS)
     assert set(PROGRAMMES) == set(scaling.MOMENTS) == {TimeTable.kind, Sine.kind} == set(PROGRAMME)
-    kinds = {one.kind for one in vars(laws).values() if isinstance(one, type) and issubclass(one, laws.Kind) and hasattr(one, "kind")}
-    assert set(law.LAW) == kinds and set(scaling.VALUES) == kinds - {"porosity"}  # of p0 alone, which no clock changes
+    kinds = {one.kind: one for one in vars(laws).values() if isinstance(one, type) and issubclass(one, laws.Kind) and hasattr(one, "kind")}
+    assert set(law.LAW) == set(kinds)
+    assert {kind for kind, one in kinds.items() if not hasattr(one, "values")} == {"porosity", "set"}  # of p0 alone, which no clock changes; of other laws
+    for kind in laws.LAWS:  # every number of a law is a temperature, or scales with the parameter
+        scaled = {*kind.values, *getattr(kind, "areas", ())}
+        assert {name for name, field in kind.model_fields.items() if field.annotation in (float, tuple[float, ...]) and not field.metadata} <= scaled
 
 
 def test_a_kind_of_the_menu_alone_is_refused_by_name(core, monkeypatch):

@@ -18,27 +18,42 @@ SURFACE_SIDES = {0: ("all",), 1: ("all", "left", "right"), 2: ("all", "left", "r
 EXCHANGES = ("convection", "flux", "fixed", "radiation")
 
 
-class Convection(Model):
+class Exchange(Model):
+    """One way to exchange heat: which of its fields are rates, and which is the temperature outside, for time scaling."""
+
+    rates: ClassVar[tuple[str, ...]]
+    meets: ClassVar[str | None]
+
+
+class Convection(Exchange):
     """Robin exchange: outward flux beta (T - outside)."""
+
+    rates, meets = ("beta",), "outside"
 
     beta: Beta = doc(description="heat-transfer coefficient; .inf fixes the temperature of the surface; may change over time")
     outside: Programme = doc(description="temperature of the surroundings; may change over time")
 
 
-class Flux(Model):
+class Flux(Exchange):
     """A given flux of heat."""
+
+    rates, meets = ("q",), None
 
     q: FluxProgramme = doc(description="heat into the body, by area; negative cools; may change over time")
 
 
-class Fixed(Model):
+class Fixed(Exchange):
     """A given temperature of the surface: convection with infinite beta."""
+
+    rates, meets = (), "temperature"
 
     temperature: Programme = doc(description="temperature of the surface; may change over time")
 
 
-class Radiation(Model):
+class Radiation(Exchange):
     """Grey radiation: outward flux sigma emissivity (T^4 - surroundings^4)."""
+
+    rates, meets = ("emissivity",), "surroundings"
 
     emissivity: EmissivityProgramme = doc(description="emissivity, from 0 to 1; may change over time")
     surroundings: Programme = doc(description="temperature of what surrounds the body; may change over time")
@@ -89,8 +104,10 @@ class Surface(Spell):
         return self
 
 
-class WallHeat(Model):
+class WallHeat(Exchange):
     """A hot wall (a pan): what touches it exchanges with it, and with nothing else."""
+
+    rates, meets = ("beta",), "temperature"
 
     beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at the wall's temperature")
     temperature: Programme = doc(description="temperature of the wall; may change over time")

@@ -8,7 +8,8 @@ Set        raw + X (baked - raw), X the degree of setting of the material (M, et
 Arrhenius  k0 exp(-Ea/(R T)), the rate of setting alone
 Porosity   of the aspect ratio p0 alone: by the plastic Poisson ratio (mpm.materials.porous)
 
-After validation a law is always one of these classes: dispatch with `isinstance` (each parameter has subclasses of its own that carry its unit).
+After validation a law is always one of these classes: dispatch with `isinstance` (each parameter has subclasses of its own that carry its unit: `values` are
+the fields in that unit, `areas` those in that unit times kelvin, and time scaling multiplies both).
 """
 
 import copy
@@ -26,6 +27,7 @@ class Constant(Kind):
     """The same value at every temperature."""
 
     kind: ClassVar[str] = "constant"
+    values: ClassVar[tuple[str, ...]] = ("value",)
     value: float = doc(description="the value")
 
     @model_validator(mode="before")
@@ -39,6 +41,7 @@ class Table(Kind):
     """Values over increasing temperatures, constant outside the table."""
 
     kind: ClassVar[str] = "table"
+    values: ClassVar[tuple[str, ...]] = ("value",)
     temperature: tuple[Temperature, ...] = doc(description="increasing temperatures", min_length=2)
     value: tuple[float, ...] = doc(description="value at each temperature")
     interpolation: Annotated[Literal["linear", "pchip"], Choice()] = doc("linear", description="between the entries: straight lines, or monotone cubics")
@@ -58,6 +61,8 @@ class Bump(Kind):
     """base + heat/(width sqrt(2 pi)) exp(-(T - at)^2/(2 width^2)): latent heat spread over a few kelvin."""
 
     kind: ClassVar[str] = "bump"
+    values: ClassVar[tuple[str, ...]] = ("base",)
+    areas: ClassVar[tuple[str, ...]] = ("heat",)
     base: float = doc(description="value far from the bump")
     heat: float = doc(description="integral of the bump over temperature: the latent heat, of a specific heat")
     at: Temperature = doc(description="temperature of the peak")
@@ -68,10 +73,15 @@ class Logistic(Kind):
     """low + (high - low)/(1 + exp(-(T - at)/width)): a smooth step."""
 
     kind: ClassVar[str] = "logistic"
+    values: ClassVar[tuple[str, ...]] = ("low", "high")
     low: float = doc(description="value far below the step")
     high: float = doc(description="value far above the step")
     at: Temperature = doc(description="temperature of the middle of the step")
     width: TemperatureDifference = doc(description="e-folding width of the step")
+
+
+LAWS = (Constant, Table, Bump, Logistic)  # the menu of every parameter; others add to it
+Lawful = Constant | Table | Bump | Logistic
 
 
 class Porosity(Kind):
@@ -86,6 +96,7 @@ class Arrhenius(Kind):
     """k0 exp(-activation/(R T)), R = 8.314 J/(mol K)."""
 
     kind: ClassVar[str] = "arrhenius"
+    values: ClassVar[tuple[str, ...]] = ("k0",)
     k0: Annotated[float, Quantity("1/s", "frequency factor", above=0)] = doc(description="rate at infinite temperature")
     activation: Annotated[float, Quantity("J/mol", "activation energy", least=0)] = doc(description="activation energy")
 
@@ -111,6 +122,13 @@ def said(base: type[Kind], field: str) -> Any:
     return doc(description=base.model_fields[field].description)
 
 
+def fields_of(base: type[Kind], value: Any, area: Any) -> Any:
+    """(name, (type, field)) of what carries the unit in a law: numbers, or lists of them."""
+    for name in (*base.values, *getattr(base, "areas", ())):
+        one = value if name in base.values else area
+        yield name, (one if base.model_fields[name].annotation is float else tuple[one, ...], said(base, name))
+
+
 class Law(Menu):
     """Annotation of a parameter that is a number or a function of temperature; every value in it has the parameter's unit and bounds."""
 
@@ -119,11 +137,8 @@ class Law(Menu):
         # the integral of the bump over temperature: J/kg for a specific heat in J/kg/K
         integral = quantity.unit.removesuffix("/K") if quantity.unit.endswith("/K") else f"{quantity.unit}*K" if quantity.unit else "K"
         area = Annotated[float, Quantity(integral, f"{quantity.name} times kelvin", least=0, difference=True)]
-        self.constant = of_unit(Constant, quantity, globals(), value=(value, ...))
-        table = of_unit(Table, quantity, globals(), value=(tuple[value, ...], doc(description="value at each temperature")))
-        bump = of_unit(Bump, quantity, globals(), base=(value, said(Bump, "base")), heat=(area, said(Bump, "heat")))
-        logistic = of_unit(Logistic, quantity, globals(), low=(value, said(Logistic, "low")), high=(value, said(Logistic, "high")))
-        super().__init__(f"law of the {quantity.name}", self.constant, table, bump, logistic, *more)
+        self.constant, *others = (of_unit(base, quantity, globals(), **dict(fields_of(base, value, area))) for base in LAWS)
+        super().__init__(f"law of the {quantity.name}", self.constant, *others, *more)
         self.quantity = quantity
 
     def check(self, value: Any) -> Any:
@@ -147,19 +162,19 @@ class Law(Menu):
         return found
 
 
-Rate = Annotated[Constant | Table | Bump | Logistic | Arrhenius, Law(Quantity("1/s", "rate of setting", least=0, difference=True), Arrhenius)]
+Rate = Annotated[Lawful | Arrhenius, Law(Quantity("1/s", "rate of setting", least=0, difference=True), Arrhenius)]
 
 
 @functools.cache
 def law(unit: str, name: str, **bounds: Any) -> Any:
     """The type of a parameter that may depend on temperature: `kappa: law("W/m/K", "conductivity", least=0)`."""
-    return Annotated[Constant | Table | Bump | Logistic, Law(replace(Quantity(unit, name), difference=True, **bounds))]
+    return Annotated[Lawful, Law(replace(Quantity(unit, name), difference=True, **bounds))]
 
 
 @functools.cache
 def porous(unit: str, name: str, **bounds: Any) -> Any:
     """The type of a parameter that may depend on temperature, or on porosity."""
-    return Annotated[Constant | Table | Bump | Logistic | Porosity, Law(replace(Quantity(unit, name), difference=True, **bounds), Porosity)]
+    return Annotated[Lawful | Porosity, Law(replace(Quantity(unit, name), difference=True, **bounds), Porosity)]
 
 
 @functools.cache
@@ -167,11 +182,11 @@ def settable(unit: str, name: str, **bounds: Any) -> Any:
     """The type of a parameter that may depend on temperature, or on a degree of setting between two such laws."""
     quantity = replace(Quantity(unit, name), difference=True, **bounds)
     menu = Law(quantity)
-    end = Annotated[Constant | Table | Bump | Logistic, menu]
+    end = Annotated[Lawful, menu]
     told = "rate of setting; one for the whole material, said once"
     fields = {"raw": (end, doc(description="before")), "baked": (end, doc(description="after")), "rate": (Rate | None, doc(None, description=told))}
     kind = of_unit(Set, quantity, globals(), **fields)
-    return Annotated[Constant | Table | Bump | Logistic | Set, menu.along(kind)]
+    return Annotated[Lawful | Set, menu.along(kind)]
 
 
 def sets(material: Any) -> dict[tuple[str, str, str], Set]:

@@ -27,7 +27,7 @@ Further files
 from mpm.materials.clipped import EllipseClipped
 from mpm.materials.hencky import Hencky
 from mpm.materials.lanes import enthalpies, temperatures, values
-from mpm.materials.laws import Bump, Constant, Logistic, Table, table
+from mpm.materials.laws import LAWS, Bump, Constant, Logistic, Table, table
 from mpm.materials.neo_hookean import NeoHookean
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
@@ -39,7 +39,6 @@ from mpm.materials.warm import HenckyWarm
 
 ELASTIC = (Hencky,)  # those that may flow; NeoHookean is elastic only
 FLOW = (NoFlow, EllipseRadial, EllipseClipped)
-LAWS = (Constant, Table, Bump, Logistic)
 
 __all__ = [
     "ELASTIC", "FLOW", "GAS", "LAWS", "Alike", "Arrhenius", "Bump", "Condition", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm",

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, absolute, below, choose, erf, exponential, item, like, log1p, maximum, minimum, most, precision, put, sqrt
-from mpm.materials.laws import SQRT2, SQRT2PI, Bump, Constant, Logistic, Table
+from mpm.materials.laws import LAWS, SQRT2, SQRT2PI, Bump, Constant, Logistic, Table
 from mpm.materials.roles import enthalpies, enthalpy, temperature_of, temperatures, value, values
 
 WALK = 32  # pieces
@@ -176,3 +176,27 @@ def temperatures_table(law, h, guess):
     theta = minimum(found.end, found.start + 2.0 * over / (found.c0 + root))
     theta = settle(found, inside, found.start, found.end, theta)
     return theta + (h - inside) / values(law, theta)
+
+
+def values_in_turn(law, theta):
+    for k in range(EIGHT):
+        theta = put(theta, k, value(law, item(theta, k)))
+    return theta
+
+
+def enthalpies_in_turn(law, theta):
+    for k in range(EIGHT):
+        theta = put(theta, k, enthalpy(law, item(theta, k)))
+    return theta
+
+
+def temperatures_in_turn(law, h, guess):
+    for k in range(EIGHT):
+        h = put(h, k, temperature_of(law, item(h, k), item(guess, k)))
+    return h
+
+
+for kind in LAWS:  # a law without forms over lanes is asked lane by lane
+    for lanes, in_turn in ((values, values_in_turn), (enthalpies, enthalpies_in_turn), (temperatures, temperatures_in_turn)):
+        if kind not in lanes.registry:
+            lanes.register(kind, in_turn)

@@ -53,6 +53,9 @@ class Table(NamedTuple):
     h: np.ndarray  # (n,) primitive at the points, 0 at the first
 
 
+LAWS = (Constant, Table, Bump, Logistic)
+
+
 def table(temperature, value, interpolation="linear"):
     """A `Table` through (temperature [K], value): `linear`, or `pchip`, which is smooth and stays between neighbouring values (Fritsch & Butland 1984)."""
     x, y = np.array(temperature, dtype=np.float64), np.array(value, dtype=np.float64)

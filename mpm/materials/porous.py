@@ -13,7 +13,7 @@ from typing import NamedTuple
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, item, put
 from mpm.materials.clipped import EllipseClipped
-from mpm.materials.laws import Bump, Constant, Logistic, Table
+from mpm.materials.laws import LAWS, Constant
 from mpm.materials.no_flow import NoFlow
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.roles import aspects, at_volume, settled, values
@@ -47,7 +47,7 @@ def same_lanes(law, theta, J):
     return values(law, theta)
 
 
-for kind in (Constant, Bump, Logistic, Table):
+for kind in LAWS:
     at_volume.register(kind, same)
     aspects.register(kind, same_lanes)
 

@@ -7,15 +7,13 @@ import numpy as np
 
 from mpm.jit import role
 from mpm.materials import (
+    LAWS,
     Alike,
     Arrhenius,
-    Bump,
-    Constant,
     EllipseClipped,
     EllipseRadial,
     Hencky,
     HenckyWarm,
-    Logistic,
     NeoHookean,
     NoFlow,
     Porous,
@@ -65,19 +63,19 @@ def pick_softening(law, i):
     return Softening(pick(law.inner, i), pick(law.E, i))
 
 
-@pick.register(Constant)
-def pick_constant(law, i):
-    return Constant(law.constant[i])
+def numbers_of(kind):
+    """`pick` of a law of one to four numbers."""
+    return {
+        1: lambda law, i: kind(law[0][i]),
+        2: lambda law, i: kind(law[0][i], law[1][i]),
+        3: lambda law, i: kind(law[0][i], law[1][i], law[2][i]),
+        4: lambda law, i: kind(law[0][i], law[1][i], law[2][i], law[3][i]),
+    }[len(kind._fields)]
 
 
-@pick.register(Bump)
-def pick_bump(law, i):
-    return Bump(law.base[i], law.heat[i], law.at[i], law.width[i])
-
-
-@pick.register(Logistic)
-def pick_logistic(law, i):
-    return Logistic(law.low[i], law.high[i], law.at[i], law.width[i])
+for law_of_temperature in LAWS:
+    if law_of_temperature is not Table:
+        pick.register(law_of_temperature, numbers_of(law_of_temperature))
 
 
 @pick.register(Table)

@@ -1,19 +1,20 @@
 """Laws of materials: from a config's to those of a run."""
 
+import functools
+
 import numpy as np
 
 from mpm.config.laws import rate_of
 from mpm.materials import (
     GAS,
+    LAWS,
     Alike,
     Arrhenius,
-    Bump,
     Constant,
     EllipseClipped,
     EllipseRadial,
     Hencky,
     HenckyWarm,
-    Logistic,
     NeoHookean,
     NoFlow,
     Porous,
@@ -24,11 +25,16 @@ from mpm.materials import (
 from mpm.scene.menus import known
 from mpm.state import Expansion, Latched, NoSetting, Setting, Softening
 
+
+def of_the_same_fields(kind, model):
+    """The run-time law whose fields are called as in the config."""
+    return kind(*(getattr(model, name) for name in kind._fields))
+
+
 LAW = {
+    **{kind.__name__.lower(): functools.partial(of_the_same_fields, kind) for kind in LAWS},
     "constant": lambda model: Constant(float(model.value)),
     "table": lambda model: table(model.temperature, model.value, model.interpolation),
-    "bump": lambda model: Bump(model.base, model.heat, model.at, model.width),
-    "logistic": lambda model: Logistic(model.low, model.high, model.at, model.width),
     "set": lambda model: Sets(law(model.raw), law(model.baked)),
     "arrhenius": lambda model: Arrhenius(model.k0, model.activation / GAS),
     "porosity": lambda model: Porous(1.0 - model.initial, model.exponent),

@@ -1,7 +1,7 @@
 """What the kinds of a menu of the config are to solvers: one table a family. A kind that its table does not know is refused by name, never left out.
 
 acting(entry)     exchange of one surface entry          pulling(entries)   loads of one body
-To add an exchange or a load: a line in its table, in that of time scaling (scaling.py), and what is new about it in the solvers that `parts` names.
+To add an exchange or a load: a line in its table, and what is new about it in the solvers that `Part.role` names.
 """
 
 from typing import Any, NamedTuple

@@ -13,27 +13,12 @@ import numpy as np
 
 from mpm.config import boundary
 from mpm.records.variables import is_total, turn
-from mpm.scene.menus import known
 from mpm.state import Run
 from mpm.warned import warning
 
 FROUDE, KINETIC = 0.02, 0.05
-VALUES = {
-    "constant": ("value",),
-    "table": ("value",),
-    "bump": ("base", "heat"),
-    "logistic": ("low", "high"),
-    "arrhenius": ("k0",),
-    "set": ("raw", "baked"),
-}  # fields of a law of temperature; of what sets, laws
 MOMENTS = {"table": ("time",), "sine": ("period",)}  # fields of a programme over time
 RATES = {"table": ("value",), "sine": ("mean", "amplitude")}  # its values
-EXCHANGE = {  # the field that is a rate, and the field of the temperature outside
-    "convection": ("beta", "outside"),
-    "flux": ("q", None),
-    "fixed": ("", "temperature"),
-    "radiation": ("emissivity", "surroundings"),
-}
 
 
 def times(value, factor: float):
@@ -50,10 +35,9 @@ def changed(model, factor: float, *names: str):
 
 def law_times(law, factor: float):
     """A law of temperature or setting whose values are multiplied."""
-    names = VALUES[type(law).kind]
     if type(law).kind == "set":
-        return law.model_copy(update={name: law_times(getattr(law, name), factor) for name in names})
-    return changed(law, factor, *names)
+        return law.model_copy(update={name: law_times(getattr(law, name), factor) for name in ("raw", "baked")})
+    return changed(law, factor, *law.values, *getattr(law, "areas", ()))
 
 
 def sooner(programme, S: float):
@@ -66,12 +50,12 @@ def faster(programme, S: float):
     return programme * S if isinstance(programme, float | int) else changed(sooner(programme, S), S, *RATES[type(programme).kind])
 
 
-def exchange(model, S: float, rate: str, temperature: str | None):
-    """One exchange of a surface or a wall: its rate, and its temperature over time."""
+def exchange(model, S: float):
+    """One exchange of a surface or a wall: its rates, and its temperature over time."""
     if model is None:
         return None
-    model = model.model_copy(update={rate: faster(getattr(model, rate), S)}) if rate else model
-    return model.model_copy(update={temperature: sooner(getattr(model, temperature), S)}) if temperature else model
+    rates = {name: faster(getattr(model, name), S) for name in model.rates}
+    return model.model_copy(update=rates | ({model.meets: sooner(getattr(model, model.meets), S)} if model.meets else {}))
 
 
 def setting(model, S: float, *names: str):
@@ -94,7 +78,7 @@ def material(model, S: float):
 
 def surface(model, S: float):
     model = changed(model, 1 / S, "from", "until")
-    return model.model_copy(update={kind: exchange(getattr(model, kind), S, *known(EXCHANGE, kind, "exchange")) for kind in boundary.EXCHANGES})
+    return model.model_copy(update={kind: exchange(getattr(model, kind), S) for kind in boundary.EXCHANGES})
 
 
 def load(model, S: float):
@@ -114,7 +98,7 @@ def hurried(experiment):
             "surfaces": tuple(surface(one, S) for one in experiment.surfaces),
             "contacts": tuple(changed(pair, S, "conductance") for pair in experiment.contacts),
             "loads": tuple(load(one, S) for one in experiment.loads),
-            "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S, "beta", "temperature")}) for side, wall in experiment.walls.items()},
+            "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S)}) for side, wall in experiment.walls.items()},
             "time": changed(experiment.time, 1 / S, "end", "step").model_copy(update={"scale": 1.0}),
             "method": changed(experiment.method, 1 / S, "heat_step"),
             "output": output.model_copy(update={"snapshots": changed(output.snapshots, 1 / S, "every")}),
