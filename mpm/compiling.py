@@ -176,4 +176,4 @@ def expected(experiment: Any) -> float:
 
 def meets(experiment: Any) -> bool:
     """Whether a config names what its bodies may touch. That they reach a wall that it does not name is not foreseen."""
-    return len(experiment.bodies) > 1 or bool(experiment.tools) or any(wall.kind == "contact" for wall in experiment.walls.values())
+    return len(experiment.bodies) > 1 or bool(experiment.tools) or any(wall.acts == "contact" for wall in experiment.walls.values())

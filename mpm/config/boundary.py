@@ -114,8 +114,9 @@ class WallHeat(Exchange):
 
 
 class Face(Kind):
-    """A wall of any kind."""
+    """A wall of any kind: a mirror, `slip` or `stick`, to the bodies that start at it, or `contact`, met by its true gap, by all. Who meets it feels `friction`."""
 
+    acts: ClassVar[str]
     heat: WallHeat | None = doc(None, description="heat that the wall exchanges with what touches it")
 
 
@@ -123,18 +124,23 @@ class Slip(Face):
     """No motion through the wall, free motion along it: a mirror, bonded to the bodies that start at it. Others meet it as contact without friction."""
 
     kind: ClassVar[str] = "slip"
+    acts: ClassVar[str] = "slip"
+    friction: ClassVar[float] = 0.0
 
 
 class Stick(Face):
     """No motion at the wall: bonded to the bodies that start at it. Others meet it as contact without sliding."""
 
     kind: ClassVar[str] = "stick"
+    acts: ClassVar[str] = "stick"
+    friction: ClassVar[float] = math.inf
 
 
 class Contact(Face):
     """A face that is touched and left: no motion into it, free motion away from it, friction along it."""
 
     kind: ClassVar[str] = "contact"
+    acts: ClassVar[str] = "contact"
     friction: Friction = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches")
 
 

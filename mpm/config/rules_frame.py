@@ -66,7 +66,7 @@ def frame_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     if experiment.method.frame == "total" and getattr(item, "heat", None) is not None:
         said = "walls exchange no heat in the total frame: what lies on one exchanges through its own surface"
         yield Finding(("walls", side, item.kind, "heat"), said, ["an entry under surfaces", UPDATED], on_key=True)
-    if experiment.method.frame == "total" and item.kind == "contact":
+    if experiment.method.frame == "total" and item.acts == "contact":
         yield Finding(("walls", side), "the total frame has no contact yet: it holds what lies on a wall at the start", ["slip", "stick", UPDATED], on_key=True)
 
 

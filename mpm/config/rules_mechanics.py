@@ -62,9 +62,9 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
 
 
 def mechanics_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
-    if asked(experiment) and known(lambda: item.kind == "contact" and 0 < item.friction < float("inf")):
+    if asked(experiment) and known(lambda: item.acts == "contact" and 0 < item.friction < float("inf")):
         said = "implicit mechanics knows contact without friction, or without sliding"
-        yield Finding(("walls", side, "contact", "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
+        yield Finding(("walls", side, item.kind, "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:

@@ -96,7 +96,7 @@ def filled(experiment: Any, body: Any, axis: int, sides: tuple, given: list[dict
     return (
         abs(low) <= 1e-9 * size
         and abs(high - size) <= 1e-9 * size
-        and all(wall is None or (wall.kind == "slip" and wall.heat is None) for wall in walls)
+        and all(wall is None or (wall.acts == "slip" and wall.heat is None) for wall in walls)
         and not any(entry["side"] in (*sides, "all", "lateral") for entry in given)
         and not experiment.method.offset[axis]
     )

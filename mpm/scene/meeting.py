@@ -48,13 +48,13 @@ def plan_meetings(experiment, sides) -> Meets:
     walls, stops, pairs, links = np.full((B, 3, 2), CONTACT), np.full((B, 3, 2), -1.0), np.full((B, B), -1.0), np.zeros((B, B))
     for number, side in enumerate(sides):
         axis, upper, named = number // 2, number % 2, experiment.walls.get(side)
-        kind = type(named).kind if named is not None else "slip"
+        acts = named.acts if named is not None else "slip"
         for b, (low, high) in enumerate(boxes):
             gap = (grid.size[axis] - high[axis] if upper else low[axis]) / grid.cell
-            if side == "axis" or (kind != "contact" and gap <= AT):
-                walls[b, axis, upper] = KINDS[kind]
-            elif kind == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
-                stops[b, axis, upper] = {"contact": getattr(named, "friction", 0.0), "slip": 0.0, "stick": math.inf}[kind]
+            if side == "axis" or (acts != "contact" and gap <= AT):
+                walls[b, axis, upper] = KINDS[acts]
+            elif acts == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
+                stops[b, axis, upper] = named.friction if named is not None else 0.0
     fields = np.zeros(B, np.int64)
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
     for b in range(B):

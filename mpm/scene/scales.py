@@ -176,7 +176,7 @@ def bearing(experiment, name: str) -> tuple[str, float]:
                 return "stands", 1.0
             continue
         walls = [experiment.walls.get(side) for side in SIDES[grid.dimension][2 * axis : 2 * axis + 2]]
-        clamps = sum(touch and wall is not None and wall.kind == "stick" for touch, wall in zip(ends, walls, strict=True))
+        clamps = sum(touch and wall is not None and wall.acts == "stick" for touch, wall in zip(ends, walls, strict=True))
         factor = 0.75 if grid.dimension == "axisymmetric" else {1: 3.0, 2: 0.5}.get(clamps, 0.0)
         slender = factor * ((upper[axis] - max(lower[axis], 0.0)) / (upper[down] - lower[down])) ** 2 if clamps else 0.0
         found = slender if not found else min(found, slender or found)  # the shorter span bears it

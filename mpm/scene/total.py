@@ -33,7 +33,7 @@ def wall_kinds(experiment) -> np.ndarray:
     kinds = np.full((3, 2), KINDS["slip"])
     for number, side in enumerate(SIDES[experiment.grid.dimension]):
         if side in experiment.walls:
-            kinds[number // 2, number % 2] = KINDS[type(experiment.walls[side]).kind]
+            kinds[number // 2, number % 2] = KINDS[experiment.walls[side].acts]
     return kinds
 
 

@@ -25,7 +25,7 @@ def exact(experiment):
     if experiment.grid.dimension != "axisymmetric" or len(experiment.bodies) != 1 or type(body.shape).kind != "box" or any(experiment.method.offset):
         raise ValueError("thermal_cylinder needs one box in grid.dimension axisymmetric, and no offset")
     (a, low), (b, high) = body.shape.lower, body.shape.upper
-    if not 0 < a < b < width or low != 0 or abs(high - height) > 1e-9 * height or any(wall.kind != "slip" for wall in experiment.walls.values()):
+    if not 0 < a < b < width or low != 0 or abs(high - height) > 1e-9 * height or any(wall.acts != "slip" for wall in experiment.walls.values()):
         raise ValueError("thermal_cylinder needs a hollow cylinder from the bottom to the top of the domain, both walls slip")
     if material.elastic is None or material.expansion is None or material.flow is not None or experiment.gravity is not None:
         raise ValueError("thermal_cylinder needs an elastic body with expansion, without flow and gravity")
