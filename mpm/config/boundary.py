@@ -114,7 +114,7 @@ class WallHeat(Exchange):
 
 
 class Face(Kind):
-    """A wall of any kind. It acts as a mirror, `slip` or `stick`, on bodies that start at it, or as `contact`, by the true gap; what meets it feels `friction`."""
+    """It acts as a mirror, `slip` or `stick`, on bodies that start at it, or as `contact`, by the true gap; what meets it feels `friction`."""
 
     acts: ClassVar[str]
     heat: WallHeat | None = doc(None, description="heat that the wall exchanges with what touches it")
