@@ -55,6 +55,6 @@ def bounded(unit: np.ndarray, y: np.ndarray, known: np.ndarray, seed: int = 0) -
         effects.append(single[:, 1:EFFECT] @ np.mean(single[:, 1:EFFECT] * (nearest - mean)[:, None], axis=0))
     ways = [nearest, low, high, np.random.default_rng(seed).choice(y[known], len(y)), mean + sum(effects)]
     ways = [fill(np.clip(way, low, high)) for way in (*ways, *(mean + sign * effect for effect in effects for sign in (1, -1)))]
-    found = [estimate(basis, way, seed) for way in ways]
+    found = [estimate(basis, way, seed, groups=0) for way in ways]
     span = lambda all_: np.clip(np.stack([all_[0][:, 0], np.min(all_, axis=0)[:, 1], np.max(all_, axis=0)[:, 2]], axis=1), 0, 1)  # noqa: E731
     return Indices(span([one.first for one in found]), span([one.total for one in found]), found[0].explained)

@@ -64,24 +64,60 @@ def test_exact_indices_lie_in_their_intervals(function, exact, count, share):
     u = unit_sample("sobol", count, exact.shape[1], 1)
     found, _ = effects(dataset(u, function(u), np.random.default_rng(2).random(count) < share))
     assert inside(found, exact).all(), (found, exact)
-    assert np.max(found[..., 2] - found[..., 1]) < (0.04 if count == 512 else 0.015)
+    assert np.max(found[..., 2] - found[..., 1]) < (0.06 if count == 512 else 0.015)  # no use if wider
+
+
+def linear(u):
+    return 3 * u[:, 0] + 2 * u[:, 1]
+
+
+def product(u):
+    return np.prod(1 + u * C, axis=1)
+
+
+def step(u):
+    sign = np.sign(u - [0.3, 0.6, 0.5])
+    return sign[:, 0] + 0.5 * sign[:, 1] * sign[:, 2]
+
+
+def morris(u):
+    """Main effects, products of two, and one of three."""
+    w = 2 * u - 1
+    return sum(c * np.prod(w[:, list(which)], axis=1) for which, c in TERMS.items())
+
+
+C = np.array([1, 2, 0.5, 0.1])
+OF_C = C**2 / 12 / (1 + C / 2) ** 2
+TERMS = {(0,): 20, (1,): 10, (2,): 5, (4,): 3, (0, 1): -15, (2, 3): 8, (3, 4, 5): -10}
+SHARES = {which: c**2 / 3 ** len(which) for which, c in TERMS.items()}
+WHOLE = np.prod(1 + OF_C) - 1
+FURTHER = {
+    "linear": (linear, np.array([[9, 4, 0], [9, 4, 0]]) / 13),
+    "linear and noise": (lambda u: linear(u) + 0.5 * np.random.default_rng(int(1e9 * u[0, 0])).normal(size=len(u)), np.array([[9, 4, 0], [9, 4, 0]]) / 16),
+    "product": (product, np.stack([OF_C, OF_C * (1 + WHOLE) / (1 + OF_C)]) / WHOLE),
+    "step": (step, np.array([[0.84, 0, 0.01], [0.84, 0.24, 0.25]]) / 1.09),
+    "morris": (morris, np.array([[SHARES.get((k,), 0) for k in range(6)], [sum(v for which, v in SHARES.items() if k in which) for k in range(6)]])
+               / sum(SHARES.values())),
+}  # fmt: skip
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("share", [0.0, 0.05], ids=["whole", "5 % failed"])
-@pytest.mark.parametrize(("count", "samples"), [(512, 200), (4096, 50)])
-@pytest.mark.parametrize(("function", "exact"), CASES, ids=NAMES)
-def test_intervals_cover_as_often_as_they_say(function, exact, count, share, samples):
-    """Random samples. At most 1 of 20 may lie outside on the average; one index of 200 samples may by chance be 2.5 % worse."""
-    hits = 0
+@pytest.mark.parametrize(("count", "samples", "share"), [(512, 40, 0.0), (512, 40, 0.05), (4096, 10, 0.05)])
+@pytest.mark.parametrize("name", [*NAMES, *FURTHER])
+def test_intervals_cover_as_often_as_they_say(name, count, samples, share):
+    """Random samples, no constant is fitted to any of the functions. At most 1 of 20 may lie outside on the average, and of each index 1 of 10."""
+    function, exact = dict(zip(NAMES, CASES, strict=True)).get(name) or FURTHER[name]
+    hits, width = 0, 0
     for seed in range(samples):
         random = np.random.default_rng(1000 + seed)
         u = random.random((count, exact.shape[1]))
         u = u[random.random(count) >= share]
-        found = projection.estimate(projection.chosen(u, function(u)), function(u), seed)
+        y = function(u)
+        found = projection.estimate(projection.chosen(u, y), y, seed)
         hits = hits + inside(np.stack([found.first, found.total]), exact)
-    assert np.all(hits >= 0.925 * samples), hits / samples
-    assert np.mean(hits) >= 0.95 * samples, hits / samples
+        width = max(width, np.max(found.first[:, 2] - found.first[:, 1]))
+    print(f"{name}, {count} points: {100 * np.mean(hits) / samples:.0f} % inside, the least {100 * np.min(hits) / samples:.0f} %, widest first {width:.3f}")
+    assert np.all(hits >= 0.9 * samples) and np.mean(hits) >= 0.95 * samples, hits / samples
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3], ids=["whole", "30 % failed"])
