@@ -84,7 +84,7 @@ def summary(done: Any, folder: Any, picture: Any, said: list[str]) -> dict[str, 
     failures = [{"point": list(key), "error": why} for key, why in done.evaluator.failed.items()]
     return {"out": folder, "dataset": done.dataset, "picture": picture, "parameters": parameters, "correlation": known.correlation,
             "cannot_be_told_apart": apart, "points": len(done.evaluator.known), "ran": done.ran, "failures": failures,
-            "converged": done.searches.best.converged, "sentences": said, "exit_code": done.exit_code}  # fmt: skip
+            "converged": done.converged, "sentences": said, "exit_code": done.exit_code}  # fmt: skip
 
 
 def draw(dataset: Any) -> Any:

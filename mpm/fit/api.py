@@ -37,9 +37,14 @@ class Fitted:
     compiling: float = 0.0
 
     @property
+    def converged(self) -> bool:
+        """Whether the search came to its end, and not short of the optimum, as where failed points stand in its way."""
+        return self.searches.best.converged and not self.known.short()
+
+    @property
     def exit_code(self) -> int:
         """As of a sweep; 3 also where the search did not converge."""
-        return 3 if self.evaluator.failed or not self.searches.best.converged else 0
+        return 3 if self.evaluator.failed or not self.converged else 0
 
 
 def solve(problem: Problem, run: Callable[[list], list], posterior: int = 0, told: Callable[[str], None] = lambda _: None) -> Fitted:

@@ -19,6 +19,7 @@ from mpm.fit.problem import Curve, Problem
 
 TOGETHER = 0.95
 LEVEL = 0.95
+SHORT = 0.25  # half as far as the interval reaches
 FLOOR = 1e-14  # of the largest eigenvalue of J^T J: what lies below is not known at all
 
 
@@ -58,6 +59,16 @@ class Known:
     def correlation(self) -> np.ndarray:
         d = np.sqrt(np.diag(self.shape))
         return self.shape / d[:, None] / d[None, :]
+
+    def short(self) -> bool:
+        """Whether a step within the ranges still promises a lower sum of squares, by more than SHORT of the rise at the interval's end."""
+        from scipy.optimize import lsq_linear
+
+        low, high = self.problem.bounds
+        room = 1e-9 * (high - low)  # SciPy wants the ends apart
+        step = lsq_linear(self.jacobian, -self.residuals, (low - self.u - room, high - self.u + room)).x
+        promised = float(self.residuals @ self.residuals - np.sum((self.residuals + self.jacobian @ step) ** 2))
+        return promised > SHORT * self.quantile**2 * self.variance
 
     def interval(self) -> np.ndarray:
         """95 % by the covariance, shape (parameter, 2); not cut at the ends of the range."""

@@ -105,6 +105,9 @@ def doubts(done: Any) -> list[str]:
     problem, known, said = done.problem, done.known, []
     if not done.searches.best.converged:
         said.append(f"the search did not converge: {done.searches.best.why}")
+    elif not done.converged:
+        way = ", and failed points stand in its way" if done.evaluator.failed else ""
+        said.append(f"the search ended short of the optimum{way}: the values and intervals are not to be trusted")
     if len(done.searches.found) > 1:
         low, high = problem.bounds
         said.append(f"{done.searches.alike(high - low)} of {len(done.searches.found)} starts led to this optimum")

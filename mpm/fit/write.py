@@ -34,7 +34,7 @@ def write(done: Any, rounds: Any, plan: Any) -> Path:
     groups |= {"evaluations": laid.root(swept_paths(plan)), "evaluations/series": laid.series()}
     experiment = done.problem.experiment
     attrs = {"Conventions": "CF-1.11", "title": experiment.title or experiment.name, "name": experiment.name, "config": experiment.source,
-             "config_resolved": experiment.resolved(), "sentences": sentences(done), "converged": int(done.searches.best.converged),
+             "config_resolved": experiment.resolved(), "sentences": sentences(done), "converged": int(done.converged),
              "evaluations": len(done.evaluator.known), "failed": len(done.evaluator.failed), "sigma_known": int(done.problem.known_sigma),
              "residual_variance": done.known.variance, "versions": versions(), "git_revision": git_revision(), "machine": machine()}  # fmt: skip
     path = rounds.store.out / "fit.nc"

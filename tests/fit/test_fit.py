@@ -164,6 +164,16 @@ def test_failed_points_shorten_the_step_and_are_told(truth):
     assert done.exit_code == 3
 
 
+def test_where_failed_points_keep_it_from_the_optimum_it_does_not_say_converged(truth):
+    """Every point that is better than the start fails."""
+    experiment = config(noisy(truth, np.random.default_rng(7), 0.5), {"kappa": {"log": [0.1, 2]}})
+    problem = read(experiment)
+    problem = replace(problem, parameters=tuple(moved(p) for p in problem.parameters))
+    done = solve(problem, InProcess(problem, bare(experiment), broken=lambda values: values[0] > 0.201))
+    assert not done.converged and done.exit_code == 3
+    assert any("ended short of the optimum, and failed points stand in its way" in text for text in sentences(done))
+
+
 def moved(parameter):
     """The same, begun elsewhere."""
     return replace(parameter, start={"kappa": 0.2, "beta": 40.0, "alpha": 4000.0}[parameter.name])
