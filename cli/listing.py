@@ -12,7 +12,8 @@ def commands() -> list[Any]:
     from mpm.reference.entry import Entry
 
     found = []
-    for name, command in typer.main.get_command(app).commands.items():
+    group: Any = typer.main.get_command(app)  # of an app with several commands
+    for name, command in group.commands.items():
         context = typer.Context(command, info_name=f"mpm {name}")
         first, _, rest = (command.help or "").partition("\n\n")
         found.append(Entry(f"mpm {name}", "command", " ".join(first.split()), {"usage": context.get_usage().removeprefix("Usage: ")}, rest.strip()))

@@ -7,6 +7,7 @@ Exit codes   0 ok; 1 internal error, disk (stdout's too), or (compare) different
 import os
 import sys
 import warnings
+from typing import Any
 
 import typer
 from mpm_cli.ask import ask
@@ -61,7 +62,7 @@ COMMANDS = (
     info,
     warmup,
 )
-UsageError = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
+UsageError: Any = typer.BadParameter.__mro__[1]  # typer brings its own copy of click from some version on
 
 app = typer.Typer(
     name="mpm",
@@ -114,8 +115,8 @@ def told(error: Exception) -> int:
     from mpm.sweep.store import Refused
 
     # named without importing what the command did not need
-    places = (("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.plots", "NoDataset"), ("mpm.scene.refusal", "SceneError"))
-    places += (("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"), ("mpm.starting.places", "Missing"))
+    places = [("mpm.config", "ConfigError"), ("mpm.plots", "UnknownFigure"), ("mpm.plots", "NoDataset"), ("mpm.scene.refusal", "SceneError")]
+    places += [("mpm.opened", "UnknownPoint"), ("mpm.exports", "ExportError"), ("mpm.movies", "MovieError"), ("mpm.starting.places", "Missing")]
     ours = [getattr(sys.modules.get(room), name, None) for room, name in places]
     if isinstance(error, (Refused, *filter(None, ours))):
         warn(str(error))

@@ -31,7 +31,7 @@ def movie(
     of: Annotated[str | None, typer.Option("--of", metavar="FIELD", help="Field that colours tell.  [default: temperature]", show_default=False)] = None,
     every: Annotated[int, typer.Option("--every", metavar="N", min=1, help="Show one of N snapshots.")] = 1,
     speed: Annotated[float | None, typer.Option("--speed", metavar="S", min=0, help=SPEED, show_default=False)] = None,
-    size: Size = "600x400",
+    size: Size = "600x400",  # type: ignore[assignment]  # a default goes through the parser too
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:

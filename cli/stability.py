@@ -51,9 +51,12 @@ def calm(talks: Any) -> Any:
     if isinstance(talks, Bar):
         tell, talks.finished = talks.finished, lambda label, line, again: tell(label, {**line, "status": 0}, again)
         return talks
-    quiet = Reporter()
-    quiet.note = talks.note
-    return quiet
+
+    class Notes(Reporter):
+        def note(self, text: str) -> None:
+            talks.note(text)
+
+    return Notes()
 
 
 def draw(dataset: Any) -> Any:

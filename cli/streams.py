@@ -19,7 +19,8 @@ class Stream:
 
     def __init__(self, stream: Any, name: str):
         self.stream = stream if stream is not None else open(os.devnull, "w", encoding="utf-8")
-        self.name, self.error = name, None
+        self.name = name
+        self.error: OSError | None = None
 
     def write(self, text: str) -> int:
         """Write, or lose, a text."""

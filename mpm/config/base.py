@@ -79,7 +79,9 @@ class Menu:
         self.kinds = {kind.kind: kind for kind in kinds}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        choices = {name: core_schema.no_info_before_validator_function(unwrap, handler.generate_schema(kind)) for name, kind in self.kinds.items()}
+        choices: dict[Any, Any] = {
+            name: core_schema.no_info_before_validator_function(unwrap, handler.generate_schema(kind)) for name, kind in self.kinds.items()
+        }
         return core_schema.no_info_before_validator_function(self.check, core_schema.tagged_union_schema(choices, discriminator=tag))
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:

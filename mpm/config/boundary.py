@@ -59,10 +59,11 @@ class Radiation(Exchange):
     surroundings: Programme = doc(description="temperature of what surrounds the body; may change over time")
 
 
-Spell = create_model("Spell", __base__=Model, __module__=__name__, **{
+MOMENTS: dict[str, Any] = {  # `from` is no name that a class could write
     "from": (Moment, doc(0.0, description="when it begins to act")),
     "until": (Moment | None, doc(None, description="when it ends; with the run unless given")),
-})  # fmt: skip
+}
+Spell: Any = create_model("Spell", __base__=Model, __module__=__name__, **MOMENTS)
 
 
 def spell(item: Any) -> tuple[float, float]:

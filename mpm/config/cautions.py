@@ -6,7 +6,7 @@ from typing import Any
 from mpm.config.names import ROOT, Names, UnknownName
 from mpm.config.nodes import Node
 from mpm.config.quantities import Quantity
-from mpm.config.schema_paths import Path, Slot, leaves
+from mpm.config.schema_paths import Path, leaves
 
 COLD = 223.15  # K, -50 °C: below it a number without a unit was rather meant in degrees Celsius
 MOST_TOLD = 5
@@ -33,7 +33,8 @@ def cautions(experiment: Any) -> list[str]:
 
 def undrawn(experiment: Any, root: Node) -> list[str]:
     """Snapshots of particles without their positions."""
-    shots, node = experiment.output.snapshots, root
+    shots = experiment.output.snapshots
+    node: Node | None = root
     if shots is None or not shots.particles or "position" in shots.particles:
         return []
     for key in ("output", "snapshots", "particles"):
@@ -52,11 +53,11 @@ def temperatures(experiment: Any) -> Iterator[tuple[Path, Quantity]]:
     names = Names(experiment)
     for path, name in varied(experiment.sweep):
         try:
-            slot: Slot = names.resolve(name)[1]
+            quantity = names.resolve(name)[1].quantity
         except UnknownName:
             continue  # told when the sweep is planned
-        if slot.quantity is not None:
-            yield path, slot.quantity
+        if quantity is not None:
+            yield path, quantity
 
 
 def varied(sweep: Any) -> Iterator[tuple[Path, str]]:

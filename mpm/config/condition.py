@@ -15,8 +15,8 @@ from typing import Any
 MOST_LETTERS = 1000
 MOST_LEVELS = 100  # of brackets, signs and terms in each other: what is deeper would end in Python's own limit
 COMPARE = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
-BINARY = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
-UNARY = {ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_}
+BINARY: dict[type, Callable] = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+UNARY: dict[type, Callable] = {ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_}
 FUNCTIONS: dict[str, Callable] = {name: getattr(math, name) for name in ("sqrt", "exp", "log", "log10", "sin", "cos", "tan", "atan")}
 FUNCTIONS |= {"floor": math.floor, "ceil": math.ceil, "abs": abs, "min": min, "max": max}
 ARGUMENTS = {"log": (1, 2), "min": (2, 100), "max": (2, 100)}  # one unless named here
@@ -164,9 +164,12 @@ def dotted(node: ast.AST, what: str = "condition") -> str:
     parts: list[str] = []
     whole = node
     while isinstance(node, ast.Attribute | ast.Subscript):
-        if isinstance(node, ast.Subscript) and not (isinstance(node.slice, ast.Constant) and type(node.slice.value) is int):
+        if isinstance(node, ast.Attribute):
+            parts.append(node.attr)
+        elif isinstance(node.slice, ast.Constant) and type(node.slice.value) is int:
+            parts.append(str(node.slice.value))
+        else:
             break
-        parts.append(node.attr if isinstance(node, ast.Attribute) else str(node.slice.value))
         node = node.value
     if not isinstance(node, ast.Name):
         raise ConditionError(f"a {what} may not hold {ast.unparse(whole)[:60]!r}")

@@ -17,6 +17,7 @@ import math
 import os
 import re
 import stat
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -89,15 +90,16 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
     line = Line(names, full[time], sign, names.index(time), names.index(value), names.index(sigma) if sigma else None)
     line.scale = 1.0 if probe and math.isnan(scale) else scale
     line.convert = conversion(head, full[value], units, unit or ("degC" if probe and not unit_of(full[value]) else ""), "value")
-    line.error = conversion(head, full[sigma], units, "", "sigma", unit or unit_of(full[value])) if sigma else None
+    if sigma:
+        line.error = conversion(head, full[sigma], units, "", "sigma", unit or unit_of(full[value]))
     split = [(number, line.whole(number, fields(number, row, sign))) for number, row in rows]
-    rows = [(number, row) for number, row in split if row[line.at[0]] or row[line.at[1]]]
-    if not rows:
+    filled = [(number, row) for number, row in split if row[line.at[0]] or row[line.at[1]]]
+    if not filled:
         raise Unreadable(head + 1, "no row has a time and a value", "a row for each measurement")
-    line.day_first = day_first([(number, row[line.at[0]]) for number, row in rows])
-    found = [line.numbers(number, row) for number, row in rows]
+    line.day_first = day_first([(number, row[line.at[0]]) for number, row in filled])
+    found = [line.numbers(number, row) for number, row in filled]
     origin = line.origin(start, min(second for second, *_ in found)) if line.clock or start is not None or probe else 0.0
-    shifted = [(number, (row[0] - origin, *row[1:])) for (number, _), row in zip(rows, found, strict=True)]
+    shifted = [(number, (row[0] - origin, *row[1:])) for (number, _), row in zip(filled, found, strict=True)]
     kept = [(number, row) for number, row in shifted if row[0] >= 0 or start is None]
     if not kept:
         raise Unreadable(head, "no row is at the start of the run or later", "an earlier `start`", "start")
@@ -130,9 +132,12 @@ class Line:
     def __init__(self, names: list[str], full: str, sign: str, time: int, value: int, sigma: int | None):
         self.names, self.sign, self.at = names, sign, (time, value, sigma)
         self.clock = False  # whether a clock time was seen
-        self.days, self.last = 0, None  # of clock times without a date
+        self.days = 0  # of clock times without a date
+        self.last: float | None = None
         self.short = SHORT.fullmatch(unit_of(full)) is not None
-        self.scale, self.convert, self.error = 1.0, None, None
+        self.scale = 1.0
+        self.convert: Callable[[float], float] = float
+        self.error: Callable[[float], float] = float
 
     def whole(self, number: int, row: list[str]) -> list[str]:
         """As many fields as the header has; signs at the end of a line count for nothing."""
@@ -220,7 +225,7 @@ class Line:
         return found
 
 
-def conversion(head: int, name: str, units: str, given: str, key: str, like: str | None = None) -> Any:
+def conversion(head: int, name: str, units: str, given: str, key: str, like: str | None = None) -> Callable[[float], float]:
     """From numbers of a column to SI: a function of one number. `like`: the unit of the values that these are standard errors of."""
     from mpm.config.units import UnitError, convert
 

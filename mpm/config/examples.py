@@ -199,9 +199,9 @@ def of(slot: Slot) -> Any:
     if get_origin(slot.type) is Literal:
         return get_args(slot.type)[-1]
     if get_origin(slot.type) is dict:
-        return {"name": of(slot.step(""))}
+        return {"name": of(slot.under(""))}
     if get_origin(slot.type) is tuple:
-        return [of(slot.step(0))] * 2
+        return [of(slot.under(0))] * 2
     return {bool: True, int: WHOLE, str: "name"}[slot.type]
 
 
@@ -209,4 +209,4 @@ def least(model: Any) -> dict[str, Any]:
     """A mapping of the keys that are needed, or of the first."""
     bases = tuple(one.__name__ for one in model.__mro__)
     keys = [name for name, field in model.model_fields.items() if field.is_required()] or list(model.model_fields)[:1]
-    return {name: example(model.__name__, name, Slot(model).step(name), bases) for name in keys}
+    return {name: example(model.__name__, name, Slot(model).under(name), bases) for name in keys}

@@ -78,7 +78,7 @@ def findings(error: ValidationError, slot: Slot, prefix: Path = ()) -> list[Find
     return [finding(item, slot, prefix) for item in error.errors(include_url=False)[:MOST_FINDINGS]]
 
 
-def finding(item: dict, slot: Slot, prefix: Path) -> Finding:
+def finding(item: Any, slot: Slot, prefix: Path) -> Finding:
     """One error of pydantic."""
     location, kind, given = tuple(item["loc"]), item["type"], item["input"]
     if "constant" in location:  # {constant: v} is a number, not a mapping

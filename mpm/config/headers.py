@@ -40,8 +40,8 @@ def fields(number: int, line: str, sign: str) -> list[str]:
 
 def units_of(name: str) -> list[str]:
     """The units that a name may tell, the likeliest first."""
-    if found := re.search(r"[\[(]([^\])]+)[\])]\s*$", name):
-        return [found[1].strip()]
+    if bracket := re.search(r"[\[(]([^\])]+)[\])]\s*$", name):
+        return [bracket[1].strip()]
     found = [name.rpartition("_")[2].strip()] if "_" in name else []
     found += [name.partition(sign)[2].strip() for sign in "/," if sign in name]
     if degrees := re.search(r"(?:°|\bdeg\.? ?)[CF]$", name):
@@ -72,7 +72,8 @@ def seconds_of(name: str) -> float | None:
 
 def header(lines: list[tuple[int, str]], time: str, value: str) -> tuple[int, list[str], str]:
     """(place among the lines, names of the columns, sign between fields)."""
-    several = timed = first = wrong = None
+    several = timed = first = None
+    wrong: Unreadable | None = None
     for place, (number, line) in enumerate(lines[: MOST_BEFORE + 1]):
         for sign in ",;\t":
             if sign not in line and place:
@@ -92,6 +93,7 @@ def header(lines: list[tuple[int, str]], time: str, value: str) -> tuple[int, li
                     timed = timed or found
     best = timed or several or first
     if best is None:
+        assert wrong is not None  # the first line is tried with every sign
         raise wrong
     return best
 

@@ -189,7 +189,7 @@ def settable(unit: str, name: str, **bounds: Any) -> Any:
     return Annotated[Lawful | Set, menu.along(kind)]
 
 
-def sets(material: Any) -> dict[tuple[str, str, str], Set]:
+def sets(material: Any) -> dict[tuple[str, str, str], Any]:
     """The parameters of a material that set, by where they stand in it."""
     places = ((section, getattr(material, section), name) for section, name in (("elastic", "E"), ("flow", "M"), ("flow", "eta")))
     found = ((section, law.kind, name, getattr(law, name, None)) for section, law, name in places if law is not None)

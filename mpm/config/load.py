@@ -63,15 +63,19 @@ def restore(resolved: dict[str, Any]) -> Experiment:
 
 def gather(source: str | File | dict[str, Any], found: list[Problem]) -> tuple[Node | None, str, File | None]:
     """Nodes, text and path of a source with all that it extends."""
+    root: Node | None
+    path: File | None = None
+    seen: tuple[File, ...] = ()
     if isinstance(source, dict):
-        origin = Origin("<dict>")
-        root, folder, path, seen = wrap(source, origin, found), File(), None, ()
+        origin, folder = Origin("<dict>"), File()
+        root = wrap(source, origin, found)
         text = json.dumps(root.plain(), indent=2, ensure_ascii=False, default=str)
     else:
         path = File(source)
         root, wrong, text = read_file(path, str(source))
         found += wrong
-        folder, seen, origin = path.parent, (path.resolve(),) if root is not None else (), Origin(str(source))
+        folder, origin = path.parent, Origin(str(source))
+        seen = (path.resolve(),) if root is not None else ()
     if root is None or not isinstance(root.value, dict):
         if not found:
             said = "the file is empty" if root is None or root.value is None else "the config is not a mapping"
@@ -159,7 +163,7 @@ def fix(root: Node, path: Path, names: Names) -> None:
         return
     varied: list[tuple[Path, str]] = [(("sweep", form), name) for form in ("axes", "derive") for name in mapping(sweep.get(form))]
     for form in ("zip", "points"):
-        entries = sweep.get(form) if isinstance(sweep.get(form), list) else []
+        entries = found if isinstance(found := sweep.get(form), list) else []
         varied += [(("sweep", form, index), name) for index, entry in enumerate(entries) for name in mapping(entry)]
     for kind, design in mapping(sweep.get("sample")).items():
         varied += [(("sweep", "sample", kind, "ranges"), name) for name in mapping(mapping(design).get("ranges"))]

@@ -34,7 +34,7 @@ class Hencky(Kind):
         given = tuple(key for key in ("E", "nu", "lam", "K", "mu") if getattr(self, key) is not None)
         if given not in PAIRS:
             raise problem("pair", f"two moduli are needed, found {' '.join(given) or 'none'}", ["E and nu", "lam and mu", "K and mu"])
-        if self.lam is not None and self.lam + 2 * self.mu / 3 <= 0:
+        if self.lam is not None and self.mu is not None and self.lam + 2 * self.mu / 3 <= 0:
             raise problem("pair", "the bulk modulus lam + 2 mu/3 must be positive", f"lam above {-2 * self.mu / 3:g} [Pa]", at=("lam",))
         return self
 

@@ -69,14 +69,15 @@ def extend(node: Node, folder: File, slot: Slot, problems: list[Problem], seen: 
 
 def brought(base: Node, folder: File) -> None:
     """Files that a base names beside itself are named as from where it is extended."""
-    measured = base.child("output") and base.child("output").child("measured")
+    output = base.child("output")
+    measured = output.child("measured") if output else None
     for curve in measured.value.values() if measured and isinstance(measured.value, dict) else ():
         file = curve.child("file")
         if file is not None and isinstance(file.value, str) and file.value:
             file.value = str(folder / file.value)
 
 
-def put(root: Node, path: Path, node: Node, slot: Slot) -> None:
+def put(root: Node, path: Path, node: Node, slot: Slot | None) -> None:
     """Set the node at a path, making mappings on the way; null takes the key away. Another kind on the way is replaced."""
     here = root
     for index, key in enumerate(path[:-1]):
@@ -84,7 +85,7 @@ def put(root: Node, path: Path, node: Node, slot: Slot) -> None:
         under = slot.step(key) if slot else None
         following = path[index + 1]
         if below is None or not isinstance(below.value, dict | list):
-            keep = {} if below is None or below.value != following else {following: Node({}, below.origin, below.line, below.column)}
+            keep = {} if below is None or below.value != following else {str(following): Node({}, below.origin, below.line, below.column)}
             below = Node(keep, node.origin, node.line, node.column, {name: (node.origin, node.line, node.column) for name in keep})
         elif under is not None and under.menu and isinstance(below.value, dict) and following not in below.value:
             below = Node({}, node.origin, node.line, node.column)
@@ -96,7 +97,7 @@ def put(root: Node, path: Path, node: Node, slot: Slot) -> None:
         here, slot = below, under
     if node.value is None and isinstance(here.value, dict):
         here.value.pop(path[-1], None)
-        here.keys.pop(path[-1], None)
+        here.keys.pop(str(path[-1]), None)
     else:
         place(here, path[-1], node, named=True)
 

@@ -43,7 +43,8 @@ class Names:
         for name, path in self.declared.items():
             self.slots[path], self.spoken[path] = slot_of(name, declared[name]), f"parameters.{name}"
             self.tails[(name,)][path] = self.tails[("parameters", name)][path] = None
-        called = {index: surface.name for index, surface in enumerate(surfaces) if isinstance(surface, Model) and isinstance(surface.name, str)}
+        models = [(index, surface) for index, surface in enumerate(surfaces) if isinstance(surface, Model)]
+        called = {index: named for index, surface in models if isinstance(named := getattr(surface, "name", None), str)}
         for path, slot in leaves(ROOT, experiment):
             if path[0] in (*NOT_VARIED, "parameters"):
                 continue
@@ -88,10 +89,10 @@ class Names:
             if part == "constant" and isinstance(value, Constant) and index == len(parts) - 1:
                 break  # kappa.constant is kappa
             key: Any = int(part) if part.isdigit() and isinstance(value, tuple) and int(part) < len(value) else part
-            slot = slot.step(key) if slot else None
-            value = below(value, key)
-            if slot is None or value is None:
+            under, value = slot.step(key), below(value, key)
+            if under is None or value is None:
                 return None
+            slot = under
             path.append(key)
         return tuple(path), slot
 

@@ -21,7 +21,7 @@ class Snapshots(Model):
 class Output(Model):
     """Cadence of the series, probes, observables and snapshots."""
 
-    every: Time = doc(None, description="time between samples of the series; end/100 unless given", validate_default=False)
+    every: Time = doc(None, description="time between samples of the series; end/100 unless given", validate_default=False)  # type: ignore[assignment]  # Experiment fills it in
     probes: dict[str, Point] = doc({}, description="points that are followed, by name")
     observables: tuple[str, ...] = doc((), description="what is recorded: temperature.mean, time_to.<probe>.95_degC, ...")
     overview: tuple[str, ...] = doc((), description="observables that the overview shows, the first first")

@@ -143,7 +143,7 @@ class Binder:
             path: Path = ("parameters", name, "value")
             unit = node.child("unit")
             self.units[name] = unit.value if unit is not None and isinstance(unit.value, str) else ""
-            if (known := before.get(".".join(path))) is not None and not isinstance(value.value, str):
+            if (known := before.get(f"parameters.{name}.value")) is not None and not isinstance(value.value, str):
                 value = Node(SIGN + str(known), *placed(value))
             if isinstance(value.value, str) and value.value.startswith(SIGN):
                 value = self.formula(value, path)
@@ -174,9 +174,10 @@ class Binder:
         for word in path:
             key = int(word) if isinstance(node.value, list) and word.isdigit() else word
             keys.append(key)
-            parent, node = node, node.child(key)
-            if node is None:
+            parent, below = node, node.child(key)
+            if below is None:
                 return  # another kind stands there now
+            node = below
         if not isinstance(node.value, str | dict | list) and node.value is not BAD:
             parent.value[keys[-1]] = self.formula(Node(SIGN + text, *placed(node)), tuple(keys))
 

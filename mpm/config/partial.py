@@ -3,7 +3,7 @@
 What failed is `MISSING`; whatever a check does with it raises `Unknown`, and that one check is skipped.
 """
 
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -31,7 +31,7 @@ MISSING = Missing()
 def loose(slot: Slot, raw: Any) -> Any:
     """`raw` validated as far as possible; MISSING in place of what is wrong."""
     try:
-        return TypeAdapter(Annotated[slot.type, *slot.notes] if slot.notes else slot.type).validate_python(raw)
+        return TypeAdapter(slot.annotated).validate_python(raw)
     except ValidationError:
         pass  # told by explain.py; here we go on with its parts
     if slot.menu:
@@ -40,9 +40,9 @@ def loose(slot: Slot, raw: Any) -> Any:
     if slot.model:
         return model(slot.model, raw) if isinstance(raw, dict) else MISSING
     if get_origin(slot.type) is dict and isinstance(raw, dict):
-        return {key: loose(slot.step(key), item) for key, item in raw.items()}
+        return {key: loose(slot.under(key), item) for key, item in raw.items()}
     if get_origin(slot.type) is tuple and isinstance(raw, list | tuple) and get_args(slot.type):
-        return tuple(loose(slot.step(index), item) for index, item in enumerate(raw))
+        return tuple(loose(slot.under(index), item) for index, item in enumerate(raw))
     return MISSING
 
 
@@ -52,7 +52,7 @@ def model(kind: type[Model], raw: dict) -> Any:
     for name, field in kind.model_fields.items():
         if name in raw:
             optional = raw[name] is None and not field.is_required() and field.default is None
-            values[name] = None if optional else loose(Slot(kind).step(name), raw[name])
+            values[name] = None if optional else loose(Slot(kind).under(name), raw[name])
         else:
             values[name] = MISSING if field.is_required() else field.get_default()
     return kind.model_construct(**values)

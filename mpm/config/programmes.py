@@ -73,7 +73,7 @@ class ProgrammeMenu(Law):
         table = of_unit(TimeTable, quantity, globals(), value=(tuple[one, ...], doc(description="value at each time")))
         sine = of_unit(Sine, quantity, globals(), mean=(one, doc(description="value in the middle")), amplitude=(swing, doc(description="half of the swing")))
         said = f"the {quantity.name} would fall below {'absolute zero' if quantity.unit == 'K' else f'{least:g}'}"
-        sine.least = least, said, quantity.unit
+        sine.least = least, said, quantity.unit  # type: ignore[attr-defined]  # of_unit gives a class derived from Sine
         Menu.__init__(self, f"programme of the {quantity.name}", table, sine)
         self.quantity = quantity
 

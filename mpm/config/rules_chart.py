@@ -23,7 +23,8 @@ def chart(experiment: Any) -> Iterator[Finding]:
 
 def compared(experiment: Any) -> Iterator[Finding]:
     """`chart.observables`."""
-    output, wanted, units = experiment.output, experiment.chart, {}
+    output, wanted = experiment.output, experiment.chart
+    units: dict[str, str] = {}  # the first name of each
     if experiment.exact is None and not (wanted.observables or output.observables or output.probes):
         said = "nothing can be compared: there is no exact solution, and nothing is observed"
         yield Finding(("chart",), said, ["exact", "chart.observables", "observables or probes under output"], on_key=True)

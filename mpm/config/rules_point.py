@@ -1,7 +1,7 @@
 """Rules for grid.dimension 0, the material point: no shape and no grid, one body, and a loading whose stages fill the run."""
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args
 
 from mpm.config.boundary import EXCHANGES
 from mpm.config.explain import Finding
@@ -23,7 +23,7 @@ def grid(experiment: Any) -> Iterator[Finding]:
         if not size:
             yield lacks(("grid", "size"), "extent of the domain, one length a direction")
         if cell is None:
-            yield lacks(("grid", "cell"), Length.__metadata__[0].wanted)
+            yield lacks(("grid", "cell"), get_args(Length)[1].wanted)
         return
     for key, value in (("size", size), ("cell", cell)):
         if value:
@@ -36,7 +36,7 @@ def body(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
         return
     at = ("bodies", name, "shape", "point")
     if item.shape.surface_to_volume is None and any(surface.of == name for surface in experiment.surfaces):
-        yield lacks((*at, "surface_to_volume"), PerLength.__metadata__[0].wanted)
+        yield lacks((*at, "surface_to_volume"), get_args(PerLength)[1].wanted)
     if item.shape.strain != type(item.shape.strain)() and experiment.materials[item.material].elastic is None:
         yield Finding((*at, "strain"), "a rigid body has no strain", f"an elastic section in materials.{item.material}", on_key=True)
 

@@ -17,8 +17,8 @@ def setting(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
         if not rates:
             allowed = "rate: {arrhenius: {k0: ..., activation: ...}}, or a number [1/s]"
             yield Finding((*where, *place, "set"), "no rate of setting is given", allowed, on_key=True)
-    first = next(iter(rates), None)
     for place, rate in rates.items():
+        first = next(iter(rates))
         if rate != rates[first]:
             said = f"a material has one degree of setting, and {'.'.join(first)} gives it another rate"
             yield Finding((*where, *place, "set", "rate"), said, "the same rate, or none here", on_key=True)

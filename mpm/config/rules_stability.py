@@ -34,7 +34,7 @@ def findings(experiment: Any) -> Iterator[Finding]:
         try:
             sweep = axes_of(stability)
         except ValidationError as error:  # what is missing is told already, where the section itself is checked
-            told = explained(error, ROOT.walk(("sweep",)), ("sweep",))
+            told = explained(error, ROOT.under("sweep"), ("sweep",))
             yield from (replace(found, path=moved(found.path, across, labels)) for found in told if found.given is not MISSING)
             return
         vary = Vary(sweep, Names(experiment))

@@ -42,14 +42,14 @@ def tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 def motion(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
     """Vectors have the grid's directions; nothing leaves the axis of a round scene."""
     at, dimension, move = ("tools", name, "motion"), experiment.grid.dimension, item.motion
-    wrong = []
+    wrong: list[Finding] = []
     for key in ("velocity", "force"):
         wrong += vector(experiment, (*at, key), getattr(move, key), f"the {key}")
     for index, x in enumerate(move.path.displacement if move.path is not None else ()):
         wrong += vector(experiment, (*at, "path", "displacement", index), x, "a displacement")
     yield from wrong
     if dimension == "axisymmetric" and not wrong:
-        radial = [((key, 0), getattr(move, key)) for key in ("velocity", "force") if getattr(move, key) is not None]
+        radial: list[tuple[tuple, Any]] = [((key, 0), getattr(move, key)) for key in ("velocity", "force") if getattr(move, key) is not None]
         radial += [(("path", "displacement", k, 0), x) for k, x in enumerate(move.path.displacement if move.path is not None else ())]
         for below, x in radial:
             if x[0] != 0:
@@ -69,7 +69,7 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
     found = taken_apart(name)
     if found is None:
         return
-    what, of, _ = found
+    what, of = found[:2]
     if experiment.method.mechanics == "implicit":
         yield Finding(("output", "observables", index), "implicit mechanics tells no forces of contact yet", "method.mechanics: explicit", given=name)
         return

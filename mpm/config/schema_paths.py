@@ -43,6 +43,11 @@ class Slot:
         return next((note for note in self.notes if isinstance(note, kind)), None)
 
     @property
+    def annotated(self) -> Any:
+        """The type with its annotations, as pydantic takes it."""
+        return Annotated[self.type, *self.notes] if self.notes else self.type
+
+    @property
     def menu(self) -> Menu | None:
         """The menu, where the slot holds a kind."""
         return self.note(Menu)
@@ -70,12 +75,12 @@ class Slot:
     def step(self, key: str | int) -> "Slot | None":
         """The slot under a key or an index, or None if there can be none."""
         if self.menu:
-            kind = self.menu.kinds.get(key)
+            kind = self.menu.kinds.get(str(key))
             return Slot(kind) if kind else None
         if self.model:
             if issubclass(self.model, Constant):
                 return None
-            found = self.model.model_fields.get(key)
+            found = self.model.model_fields.get(str(key))
             return Slot.of(found.annotation, tuple(found.metadata), found.description or "") if found else None
         inner = get_args(self.type)
         if get_origin(self.type) is dict and isinstance(key, str):
@@ -83,6 +88,12 @@ class Slot:
         if get_origin(self.type) is tuple and isinstance(key, int):
             return Slot.of(inner[0], (), self.description)
         return None
+
+    def under(self, key: str | int) -> "Slot":
+        """The slot under a key or an index that the models have; KeyError where there can be none."""
+        if (slot := self.step(key)) is None:
+            raise KeyError(key)
+        return slot
 
     def walk(self, path: Path) -> "Slot | None":
         """The slot at the end of a path, or None."""
@@ -102,11 +113,11 @@ def places(slot: Slot, word: str, path: tuple[str, ...] = ()) -> Iterator[str]:
         for name in slot.keys:
             if name == word:
                 yield ".".join((*path, name))
-            yield from places(slot.step(name), word, (*path, name))
+            yield from places(slot.under(name), word, (*path, name))
     elif get_origin(slot.type) is dict:
-        yield from places(slot.step(""), word, (*path, "<name>"))
+        yield from places(slot.under(""), word, (*path, "<name>"))
     elif get_origin(slot.type) is tuple and get_args(slot.type):
-        yield from places(slot.step(0), word, (*path, "<n>"))
+        yield from places(slot.under(0), word, (*path, "<n>"))
 
 
 def leaves(slot: Slot, value: Any, path: Path = ()) -> Iterator[tuple[Path, Slot]]:
@@ -117,7 +128,7 @@ def leaves(slot: Slot, value: Any, path: Path = ()) -> Iterator[tuple[Path, Slot
             yield from leaves(Slot(type(value)), value, (*path, value.kind))
     elif isinstance(value, Model):
         for name in type(value).model_fields:
-            yield from leaves(slot.step(name), getattr(value, name), (*path, name))
+            yield from leaves(slot.under(name), getattr(value, name), (*path, name))
     elif isinstance(value, dict):
         for name, item in value.items():
             yield from leaves(slot.step(name) or Slot(Any), item, (*path, name))
@@ -126,6 +137,6 @@ def leaves(slot: Slot, value: Any, path: Path = ()) -> Iterator[tuple[Path, Slot
             if (entry := slot.step(0)) and entry.quantity:
                 yield path, slot
             for index, item in enumerate(value):
-                yield from leaves(slot.step(index), item, (*path, index))
+                yield from leaves(slot.under(index), item, (*path, index))
     elif value is not None or slot.quantity is not None:
         yield path, slot

@@ -7,8 +7,8 @@ from typing import Any
 from mpm.config.bodies import Ball, Box, Cylinder, MaterialPoint, Polygon, Ring
 
 ALL = (1, 2, "axisymmetric", 3)
-WHERE = {Box: ALL, Ball: ALL, Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric"), MaterialPoint: (0,)}
-POINTS = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",), MaterialPoint: ()}
+WHERE: dict[Any, tuple] = {Box: ALL, Ball: ALL, Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric"), MaterialPoint: (0,)}
+POINTS: dict[Any, tuple] = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",), MaterialPoint: ()}
 ROUND_OFF = 1e-9
 
 
@@ -25,7 +25,7 @@ def misfits(shape: Any, dimension: Any, directions: int) -> Iterator[tuple[tuple
                 return
     if isinstance(shape, Box) and shape.angle and dimension != 2:
         yield ("angle",), f"a box cannot be turned in dimension {dimension}", "dimension 2"
-    on_axis = {Ball: "centre", Cylinder: "base"}.get(type(shape))
+    on_axis = {"ball": "centre", "cylinder": "base"}.get(shape.kind)
     if dimension == "axisymmetric" and on_axis and getattr(shape, on_axis)[0] != 0:
         yield (on_axis, 0), f"the {on_axis} of a {shape.kind} lies on the axis r = 0", "0"
 

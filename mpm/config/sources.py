@@ -50,7 +50,7 @@ class Numerical(Formula):
         """No text, no `not`."""
         for one in ast.walk(node):
             if isinstance(one, ast.Not) or (isinstance(one, ast.Constant) and isinstance(one.value, str)):
-                raise ConditionError(f"a formula may not hold {'not' if isinstance(one, ast.Not) else one.value[:60]!r}: it gives a number")
+                raise ConditionError(f"a formula may not hold {'not' if isinstance(one, ast.Not) else str(one.value)[:60]!r}: it gives a number")
 
 
 class SourceMenu(ProgrammeMenu):

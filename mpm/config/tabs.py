@@ -13,6 +13,12 @@ BLANK = re.compile(r"(?:[ \t]*(?:\r\n|\r|\n))*")
 SPACES, WHITE = re.compile(" *"), re.compile(r"[ \t]*")
 
 
+def end(pattern: re.Pattern[str], text: str, begin: int) -> int:
+    """Where what a pattern finds at a place ends; at the place itself where that is nothing."""
+    found = pattern.match(text, begin)
+    return found.end() if found else begin
+
+
 class TabScanner(Scanner):
     """ruamel's scanner, with tabs."""
 
@@ -69,14 +75,14 @@ class TabScanner(Scanner):
         reader.forward(length)
         if reader.peek() not in BREAKS:
             return [between] if between else []
-        begin = BLANK.match(reader.buffer, reader.pointer).end()
-        words = SPACES.match(reader.buffer, begin).end()
-        self.spaced(reader.pointer, WHITE.match(reader.buffer, words).end() if self.flow_level or words - begin >= indent else begin)
+        begin = end(BLANK, reader.buffer, reader.pointer)
+        words = end(SPACES, reader.buffer, begin)
+        self.spaced(reader.pointer, end(WHITE, reader.buffer, words) if self.flow_level or words - begin >= indent else begin)
         return super().scan_plain_spaces(indent, start_mark)
 
     def scan_block_scalar_indicators(self, start_mark: Any) -> Any:
         """What follows `|` or `>` on its line."""
-        self.spaced(self.reader.pointer, HEADER.match(self.reader.buffer, self.reader.pointer).end())
+        self.spaced(self.reader.pointer, end(HEADER, self.reader.buffer, self.reader.pointer))
         return super().scan_block_scalar_indicators(start_mark)
 
     def spaced(self, first: int, last: int) -> None:

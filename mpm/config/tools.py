@@ -14,15 +14,11 @@ Force = Annotated[float, Quantity("N", "force")]
 Mass = Annotated[float, Quantity("kg", "mass", above=0)]
 Shape = one_of("shape of a tool", Box, Ball, Cylinder, Polygon)
 
-Spell: Any = create_model(  # `from` is no name that a class could write
-    "Spell",
-    __base__=Model,
-    __doc__="From a time until another.",
-    **{
-        "from": (Moment, doc(0.0, description="time of its beginning")),
-        "until": (Moment | None, doc(None, description="time of its end; that of the run unless given")),
-    },
-)
+MOMENTS: dict[str, Any] = {  # `from` is no name that a class could write
+    "from": (Moment, doc(0.0, description="time of its beginning")),
+    "until": (Moment | None, doc(None, description="time of its end; that of the run unless given")),
+}
+Spell: Any = create_model("Spell", __base__=Model, __doc__="From a time until another.", **MOMENTS)
 
 
 class Path(Model):

@@ -5,7 +5,7 @@ A group is a dimension: an axis (one parameter), a zip (several that move togeth
 
 import json
 import math
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -259,7 +259,7 @@ class Vary:
 
 def adapter(slot: Slot) -> TypeAdapter:
     """The validator of one slot."""
-    return TypeAdapter(Annotated[slot.type, *slot.notes] if slot.notes else slot.type)
+    return TypeAdapter(slot.annotated)
 
 
 __all__ = ["RESERVED", "Derived", "Group", "Parameter", "Variation", "Vary", "at_path", "label"]

@@ -54,7 +54,7 @@ def longer(found: Results) -> tuple[Any, dict[str, str]]:
     finals = [str(name) for name, row in view.root.data_vars.items() if row.dims == view.dims and row.dtype.kind in "fiu" and name not in BOOKKEEPING]
     series = [] if view.series is None else [str(name) for name, row in view.series.data_vars.items() if row.dims == (*view.dims, "time")]
     shape = tuple(view.sizes.values())
-    for group, chosen in ((view.root, finals), (view.series, series)):
+    for group, chosen in ((view.root, finals), *([(view.series, series)] if series else [])):
         time = np.array([np.nan]) if group is view.root else np.asarray(group["time"].values, float)
         for name in chosen:
             values = np.asarray(group[name].transpose(*view.dims, ...).values, float).reshape(*shape, len(time))
@@ -63,8 +63,7 @@ def longer(found: Results) -> tuple[Any, dict[str, str]]:
             columns = {str(one): along(view, one, shape)[at[:-1]] if shape else np.full(known.sum(), view.root[one].values) for one in names}
             units = str(group[name].attrs.get("units", "1"))
             rows.append(pandas.DataFrame(columns | {"time": time[at[-1]], "variable": name, "units": units, "value": values[known]}))
-    units = {str(name): str(view.root[name].attrs.get("units", "1")) for name in names}
-    return pandas.concat(rows, ignore_index=True), units | {"time": "s"}
+    return pandas.concat(rows, ignore_index=True), {str(name): str(view.root[name].attrs.get("units", "1")) for name in names} | {"time": "s"}
 
 
 def along(view: Any, name: str, shape: tuple[int, ...]) -> np.ndarray:

@@ -54,7 +54,7 @@ def movie(
         times = shown[0].shots.times[:: max(1, every)]
         span = float(times[-1] - times[0])
         each = (span / speed if speed else min(LONGEST, max(len(times) / RATE, 1.0))) / max(1, len(times) - 1)  # s a frame
-        fig, stages = canvas(found, shown, of, [size[0] / DPI, size[1] / DPI], 1)
+        fig, stages = canvas(found, shown, of, (size[0] / DPI, size[1] / DPI), 1)
         return write(target, pictures(fig, stages, shown, times, told), each)
 
 
@@ -97,7 +97,7 @@ def nearest(point: Point, when: float) -> Any:
     return point.shots[int(np.argmin(np.abs(point.shots.times - when)))]
 
 
-def canvas(found: Results, shown: list[Point], of: str | None, inches: list[float] | None, columns: int) -> tuple[Any, list[Any]]:
+def canvas(found: Results, shown: list[Point], of: str | None, inches: tuple[float, float] | None, columns: int) -> tuple[Any, list[Any]]:
     """A figure with a panel for each point (a row each where there are several columns), and one colour bar."""
     from mpm.movies.stage import Stage, looks
     from mpm.plots.style import Picture, styled
@@ -112,7 +112,7 @@ def canvas(found: Results, shown: list[Point], of: str | None, inches: list[floa
     with styled():
         if inches is None:
             each = 9.3 / across
-            inches = [10.6, min(24.0, max(1.5, each * look.aspect + 0.9) * down + 0.9)]
+            inches = (10.6, min(24.0, max(1.5, each * look.aspect + 0.9) * down + 0.9))
         fig = Picture(figsize=inches, layout="constrained", dpi=DPI)
         fig.suptitle(wrapped(title, int(9.5 * inches[0])), fontsize=10.5, x=0.01, ha="left")
         panels = list(fig.subplots(down, across, squeeze=False, sharex=True, sharey=True).ravel())

@@ -61,8 +61,8 @@ def looks(found: Results, shown: list[Point], of: str | None) -> Look:
         low, high = low - 0.5, high + 0.5  # one value everywhere
     dimension, config = found.dimension, found.view.config
     axes, mirrored = dict(shown[0].shots.axes), dimension == "axisymmetric"
-    places = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(axes, dimension)]
-    places = np.concatenate([place[:, :2] for place in places])
+    solid = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(axes, dimension)]
+    places = np.concatenate([place[:, :2] for place in solid])
     box = np.array([places.min(axis=0), places.max(axis=0)])
     if mirrored:
         box[0, 0], box[1, 0] = -np.abs(box[:, 0]).max(), np.abs(box[:, 0]).max()
@@ -126,7 +126,8 @@ class Stage:
     """A panel. `show(frame)` draws a snapshot in the place of the one before."""
 
     def __init__(self, ax: Any, look: Look, label: str):
-        self.ax, self.look, self.named, self.drawn = ax, look, label, []
+        self.ax, self.look, self.named = ax, look, label
+        self.drawn: list[Any] = []
         ax.set_aspect("equal" if look.dimension != 1 else "auto")
         ax.grid(False)
         ax.set_xlim(*look.length(look.box[:, 0]))
@@ -173,15 +174,15 @@ class Stage:
         colours = look.mappable.to_rgba(values)
         if look.mirrored:
             place, colours = np.concatenate([place * [-1, 1, 1], place]), np.concatenate([colours, colours])
-        size = self.dot(len(place))
+        dot = self.dot(len(place))
         if look.dimension == 3:
             order = np.argsort(place[:, 2], kind="stable")
             place, colours = place[order], colours[order]
             near = (place[:, 2] - place[0, 2]) / max(np.ptp(place[:, 2]), 1e-300)
             colours[:, :3] *= (0.55 + 0.45 * near)[:, None]
-        places, size = look.length(place[:, :2]), np.full(len(place), size)
-        if look.dimension == 3 and size[0] > BALLS:
-            places, colours, size = self.balls(places, colours, size[0])
+        places, size = look.length(place[:, :2]), np.full(len(place), dot)
+        if look.dimension == 3 and dot > BALLS:
+            places, colours, size = self.balls(places, colours, dot)
         self.drawn.append(self.ax.scatter(*places.T, c=colours, s=size, lw=0, zorder=3, rasterized=True))
 
     def profile(self, x: np.ndarray, values: np.ndarray) -> None:

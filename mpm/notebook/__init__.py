@@ -73,7 +73,8 @@ class Bar(Reporter):
 
         self.html, self.handle = HTML, display(HTML(""), display_id=True)
         self.total = self.done = self.failed = 0
-        self.said, self.part, self.notes = "", 0.0, []
+        self.said, self.part = "", 0.0
+        self.notes: list[str] = []
 
     def write(self) -> None:
         """Show how far it is."""

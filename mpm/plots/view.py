@@ -31,7 +31,7 @@ class View:
         self.wanted = self.along = None  # the final that was asked for, and the parameter that it is to be drawn over
         self.root = tree.to_dataset()
         self.groups = {name: tree[name].to_dataset() for name in ("series", "grid", "particles") if name in tree.children}
-        self.series = self.groups.get("series")
+        self.series: Any = self.groups.get("series")  # None in a dataset without series: then there are no `series_names` either
         self.config = json.loads(self.root.attrs.get("config_resolved") or "{}")
         self.dims = tuple(str(dim) for dim in self.root["status"].dims)
         self.sizes = {dim: self.root.sizes[dim] for dim in self.dims}

@@ -63,7 +63,7 @@ class Entries(Sequence):
     def __len__(self) -> int:
         return len(self.ends)
 
-    def __getitem__(self, k: int) -> Frame:
+    def __getitem__(self, k: int) -> Frame:  # type: ignore[override]  # one at a time: no slices
         if not -len(self) <= k < len(self):
             raise IndexError(k)
         k %= len(self)
@@ -142,7 +142,7 @@ class Stream(Frames, Sequence):
     def __len__(self) -> int:
         return len(self.ends) or len(self.held)
 
-    def __getitem__(self, k: int) -> Frame:
+    def __getitem__(self, k: int) -> Frame:  # type: ignore[override]  # one at a time: no slices
         return self.opened()[k] if self.ends else Frame(*self.held[k])
 
     def add(self, when: float, grid: dict, particles: dict) -> None:

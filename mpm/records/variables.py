@@ -251,30 +251,30 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
     `probes` as in `threshold`.
     """
     whole = VARIABLES.get(name)
-    if whole is None and (found := single(name)) and name.partition("_")[2] not in probes:
-        whole = replace(VARIABLES[found[0]], name=name, long_name=f"{VARIABLES[found[0]].long_name}, of {found[1].replace('_', ' ')}")
-    elif whole is None and (found := met(name)):
-        what, of, axis = found
+    field, _, probe = name.partition("_")
+    if whole is None and (summed := single(name)) and not (field in AT_PROBE and probe in probes):
+        whole = replace(VARIABLES[summed[0]], name=name, long_name=f"{VARIABLES[summed[0]].long_name}, of {summed[1].replace('_', ' ')}")
+    elif whole is None and (meeting := met(name)):
+        what, of, axis = meeting
         said = MET[what][1].format(of.replace("_", " ")) + (f", along {axis}" if axis else "")
         whole = Variable(name, "", MET[what][0], POINT if what in BITES else SERIES, said)
-    if is_total(name) and dimension in PER:
-        units, of = PER[dimension]
-        return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {of}")
+    if whole is not None and is_total(name) and dimension in PER:
+        units, share = PER[dimension]
+        return replace(whole, units=units[TOTALS.index(whole.units)], long_name=f"{whole.long_name}, {share}")
     if whole is not None:
         return whole
-    if found := threshold(name, probes):
-        unit = "°C" if found.unit == "degC" else "K"
-        return Variable(name, "t", "s", POINT, f"time for {found.probe} to reach {found.value:g} {unit}")
-    if found := probed(name):
-        field, probe, part = found
-        return replace(VARIABLES[field], name=name, symbol="", dims=SERIES, long_name=f"{field} along {part} at {probe.replace('_', ' ')}")
-    field, _, probe = name.partition("_")
+    if reached := threshold(name, probes):
+        unit = "°C" if reached.unit == "degC" else "K"
+        return Variable(name, "t", "s", POINT, f"time for {reached.probe} to reach {reached.value:g} {unit}")
+    if directed := probed(name):
+        of, at, part = directed
+        return replace(VARIABLES[of], name=name, symbol="", dims=SERIES, long_name=f"{of} along {part} at {at.replace('_', ' ')}")
     if field == "error" and probe in VARIABLES:
         return replace(VARIABLES[probe], name=name, symbol="", long_name=f"error of {VARIABLES[probe].long_name}")
     if field == "misfit" and probe:
         return Variable(name, "", "K", POINT, f"root-mean-square difference from the temperature measured at {probe.replace('_', ' ')}")
     if field == "measured" and probe:
-        return replace(of := describe(probe, dimension, probes), name=name, long_name=f"measured {of.long_name}")
+        return replace(base := describe(probe, dimension, probes), name=name, long_name=f"measured {base.long_name}")
     if field in AT_PROBE and probe:
         return replace(VARIABLES[field], name=name, dims=SERIES, long_name=f"{field} at {probe.replace('_', ' ')}")
     raise KeyError(name)
@@ -282,10 +282,10 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
 
 def fits(observable: str, dimension: int | str) -> bool:
     """Whether an observable has a meaning in this dimension: `momentum.z` has none in 2."""
-    if found := probed(observable):
-        return found[2] in parts(found[0], dimension)
-    if found := single(observable):
-        return dimension != 0 and fits(next(name for name in OBSERVABLES if dataset_name(name) == found[0]), dimension)
+    if directed := probed(observable):
+        return directed[2] in parts(directed[0], dimension)
+    if summed := single(observable):
+        return dimension != 0 and fits(next(name for name in OBSERVABLES if dataset_name(name) == summed[0]), dimension)
     if found := met(observable):
         if dimension == 0 or (found[0] == "torque" and dimension not in (2, 3)):
             return False

@@ -43,9 +43,9 @@ def walk(slot: Slot, path: tuple[str, ...], seen: set[Any]) -> Iterator[Entry]:
     elif slot.model:
         yield from below(slot.model, path, seen)
     elif get_origin(slot.type) is dict:
-        yield from walk(slot.step(""), (*path, "<name>"), seen)
+        yield from walk(slot.under(""), (*path, "<name>"), seen)
     elif get_origin(slot.type) is tuple and get_args(slot.type):
-        yield from walk(slot.step(0), (*path, "<n>"), seen)
+        yield from walk(slot.under(0), (*path, "<n>"), seen)
 
 
 def below(model: Any, path: tuple[str, ...], seen: set[Any]) -> Iterator[Entry]:
@@ -53,7 +53,7 @@ def below(model: Any, path: tuple[str, ...], seen: set[Any]) -> Iterator[Entry]:
     again = model in seen
     seen.add(model)
     for name in model.model_fields:
-        slot = Slot(model).step(name)
+        slot = Slot(model).under(name)
         yield of_key(model, name, slot, (*path, name))
         if not again:
             yield from walk(slot, (*path, name), seen)
@@ -62,7 +62,7 @@ def below(model: Any, path: tuple[str, ...], seen: set[Any]) -> Iterator[Entry]:
 def of_kind(name: str, kind: type[Kind], what: str, path: tuple[str, ...]) -> Entry:
     """A kind of a menu."""
     keys = ", ".join(f"{key}{'' if field.is_required() else '?'}" for key, field in kind.model_fields.items())
-    said = " ".join(kind.__doc__.split())
+    said = " ".join((kind.__doc__ or "").split())
     return Entry(
         ".".join((*path, name)), f"{what}, a kind", said, {"keys": keys or "none", "written": f"`{name}`" if kind.bare() else f"`{{{name}: {{...}}}}`"}
     )

@@ -80,15 +80,16 @@ def dataset() -> str:
     lines = ["# Dataset reference", "", MADE, "", GROUPS]
     variables = results.observables()
     for group in results.GROUPS.values():
-        names = ("text", "unit", "symbol", "asked as")
-        lines += [f"## Variables of {group}", "", table([one for one in variables if one.facts["group"] == group], "variable", *names)]
-    for title, entries, names in (
+        rows = [one for one in variables if one.facts["group"] == group]
+        lines += [f"## Variables of {group}", "", table(rows, "variable", "text", "unit", "symbol", "asked as")]
+    tables: tuple[tuple[str, list[Entry], tuple[str, ...]], ...] = (
         ("Status of a point", results.statuses(), ("text",)),
         ("Outcomes", results.outcomes(), ("text", "advice")),
         ("Warnings", results.warnings(), ("flag", "advice")),
         ("Exit codes", results.exit_codes(), ("text",)),
         ("Sides of bodies, walls of the domain", results.sides(), ("text", "surfaces", "walls")),
-    ):
+    )
+    for title, entries, names in tables:
         lines += [f"## {title}", "", table(entries, "word", *names)]
     return "\n".join([*lines, "Causes and cures: [trouble](trouble.md).", ""])
 

@@ -108,7 +108,7 @@ def failures(view: View) -> list[dict[str, Any]]:
 
 def warnings(view: View) -> list[dict[str, Any]]:
     """Different warnings, and how many points have each kind; the words of the first."""
-    texts = np.asarray(view.root["warnings"].values).ravel() if "warnings" in view.root else []
+    texts = np.ravel(view.root["warnings"].values) if "warnings" in view.root else np.zeros(0, str)
     found: dict[str, dict[str, Any]] = {}
     for text in texts:
         for line in filter(None, str(text).split("\n")):

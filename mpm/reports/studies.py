@@ -29,7 +29,7 @@ def studies(folder: Path) -> Iterator[dict[str, Any]]:
         yield {"name": name, "title": title, "alt": alt, "sentences": said(found.attrs), "figure": figure(found), "tables": tables(found.to_dataset())}
 
 
-def said(attrs: dict[str, Any]) -> list[str]:
+def said(attrs: dict[Any, Any]) -> list[str]:
     """The answer in words, as the command printed it."""
     told = attrs.get("sentences", attrs.get("answer", ""))
     if isinstance(told, str):

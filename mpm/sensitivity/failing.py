@@ -22,8 +22,8 @@ class Row:
     """One parameter of the table."""
 
     name: str
-    shares: tuple[float, float, float]
-    edges: tuple[float, float]
+    shares: tuple[float, ...]  # of the lower, the middle and the upper third of its range
+    edges: tuple[float, ...]  # between them
     p: float
 
 

@@ -66,7 +66,8 @@ def candidates(tops: list[int], q: float, most: int) -> np.ndarray:
 
 def chosen(unit: np.ndarray, y: np.ndarray) -> Basis:
     """The basis and penalty with the least leave-one-out error."""
-    single, best = [polynomials(column) for column in unit.T], None
+    single = [polynomials(column) for column in unit.T]
+    best: tuple[float, Basis] | None = None
     for q, part in itertools.product(NORMS, PARTS):
         degrees = candidates([one.shape[1] - 1 for one in single], q, min(MOST, int(part * len(y))))
         phi = np.hstack([np.ones((len(y), 1)), np.prod([one[:, degrees[:, k]] for k, one in enumerate(single)], axis=0)])
@@ -77,6 +78,7 @@ def chosen(unit: np.ndarray, y: np.ndarray) -> Basis:
             error = float(np.mean(((y - phi @ (inverse @ by)) / (1 - lever)) ** 2))
             if best is None or error < best[0]:
                 best = error, Basis(phi, degrees, strength * cost + 1e-9 * len(y), single)
+    assert best is not None  # there are norms and penalties to try
     return best[1]
 
 

@@ -13,6 +13,7 @@ import xarray
 import mpm
 from mpm.exports import ExportError
 from mpm.exports.space import spatial
+from mpm.exports.tables import longer
 from mpm.opened import Results, UnknownPoint
 from mpm.sweep import engine
 from mpm.sweep.alone import run_in
@@ -81,6 +82,14 @@ def test_tables_have_every_point_and_every_number(tmp_path, monkeypatch):
         mpm.export(tmp_path / "s", "kappa=1", tmp_path / "a.csv")
     with pytest.raises(ExportError, match="suffix"):
         mpm.export(tmp_path / "s", to=tmp_path / "a.vtu")
+
+
+def test_a_long_table_of_a_dataset_without_series(tmp_path, monkeypatch):
+    fake(tmp_path, monkeypatch)
+    with Results(tmp_path / "s") as found:
+        found.view.series = None
+        table, units = longer(found)
+    assert table["time"].isna().all() and "temperature_mean" in set(table.variable) and units["kappa"] == "W/m/K"
 
 
 def test_texts_are_no_formulas_in_a_spreadsheet(tmp_path, monkeypatch):

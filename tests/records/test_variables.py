@@ -38,6 +38,12 @@ def test_probe_and_unknown():
         v.describe("colour")
 
 
+def test_a_probe_may_be_called_as_the_end_of_a_sum_over_a_body():
+    found = v.describe("mass_total_ball", 2, ("total_ball",))
+    assert (found.units, found.long_name) == ("kg/m", "total mass, of ball, per metre of depth")
+    assert v.describe("temperature_max_ball", 2, ("max_ball",)).long_name == "temperature at max ball"
+
+
 def test_direction_fits_dimension():
     assert v.fits("momentum.z", 3) and not v.fits("momentum.z", 2)
     assert v.fits("position.max_r", "axisymmetric") and not v.fits("position.max_x", "axisymmetric")
