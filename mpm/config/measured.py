@@ -57,6 +57,13 @@ def target(experiment: Any, name: str, curve: Measured) -> tuple[str, str] | Non
     return dataset_name(of), describe(dataset_name(of), experiment.grid.dimension, output.probes).units
 
 
+def recorded(experiment: Any, name: str, curve: Measured) -> tuple[str, str]:
+    """`target` of a curve of a config that was checked."""
+    if (found := target(experiment, name, curve)) is None:
+        raise KeyError(name)
+    return found
+
+
 def embed(experiment: Any, folder: Path) -> Iterator[Finding]:
     """Fill in `samples` from the files, which are relative to `folder`; yields what is wrong with them."""
     for name, curve in experiment.output.measured.items():

@@ -41,28 +41,34 @@ class Evaluator:
         """r of each, None where it failed."""
         return [self.problem.residuals(record) for record in self.records(points)]
 
+    def number(self, u: np.ndarray) -> np.ndarray:
+        """r at a point that has one; NoDerivative where it failed after all."""
+        if (r := self.residuals([u])[0]) is None:
+            raise NoDerivative(f"no residuals at {said(self.problem, u)}: the point failed")
+        return r
+
     def differences(self, u: np.ndarray) -> list[tuple[np.ndarray, float]]:
         """For each parameter a point beside u that is a number, and how far it is."""
         (low, high), step = self.problem.bounds, self.problem.step
-        found: list[tuple[np.ndarray, float] | None] = [None] * len(u)
+        found: dict[int, tuple[np.ndarray, float]] = {}
         first = [1.0 if u[k] + step <= high[k] else -1.0 for k in range(len(u))]
         for turn in (1.0, -1.0, 0.1, -0.1, 0.01, -0.01):
-            left = [k for k, one in enumerate(found) if one is None]
+            left = [k for k in range(len(u)) if k not in found]
             steps = {k: turn * first[k] * step for k in left}
             tried = {k: u + h * np.eye(len(u))[k] for k, h in steps.items() if low[k] <= u[k] + h <= high[k]}
             for (k, point), r in zip(tried.items(), self.residuals(list(tried.values())), strict=True):
                 if r is not None:
                     found[k] = point, steps[k]
-            if None not in found:
-                return found
-        name = self.problem.parameters[found.index(None)].name
+            if len(found) == len(u):
+                return [found[k] for k in range(len(u))]
+        name = next(parameter.name for k, parameter in enumerate(self.problem.parameters) if k not in found)
         raise NoDerivative(f"no derivative by {name} at {said(self.problem, u)}: the points on both sides failed")
 
     def jacobian(self, u: np.ndarray) -> np.ndarray:
         """dr/du, shape (values, parameters)."""
         beside = self.differences(u)
-        r = self.residuals([u])[0]
-        return np.stack([(moved - r) / h for moved, (_, h) in zip(self.residuals([point for point, _ in beside]), beside, strict=True)], axis=1)
+        r = self.number(u)
+        return np.stack([(self.number(point) - r) / h for point, h in beside], axis=1)
 
     def sensitivity(self, u: np.ndarray, predict: Callable[[Any], np.ndarray]) -> np.ndarray:
         """d predict/du of any prediction from a record; the points are those of the Jacobian."""

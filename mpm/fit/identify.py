@@ -90,7 +90,7 @@ def identify(evaluator: Evaluator, u: np.ndarray) -> Known:
     """What is known at the optimum."""
     from scipy.stats import norm, t
 
-    problem, r, jacobian = evaluator.problem, evaluator.residuals([u])[0], evaluator.jacobian(u)
+    problem, r, jacobian = evaluator.problem, evaluator.number(u), evaluator.jacobian(u)
     free = len(r) - len(u)
     variance = 1.0 if problem.known_sigma else float(r @ r) / free if free else math.nan
     quantile = float(norm.ppf(0.5 + LEVEL / 2) if problem.known_sigma else t.ppf(0.5 + LEVEL / 2, free)) if problem.known_sigma or free else math.nan
@@ -143,7 +143,11 @@ def gains(evaluator: Evaluator, known: Known) -> dict[str, np.ndarray]:
     record = evaluator.records([known.u])[0]
     for variable in (name for name in names if name in record.series and name not in used and like.units == "K"):
         further = Curve(names[variable], variable, like.times, like.values, like.sigma, like.weight, like.units)
-        j = evaluator.sensitivity(known.u, lambda record, further=further: further.scaled(further.predict(record)))
+
+        def predicted(record: Any, further: Curve = further) -> np.ndarray:
+            return further.scaled(further.predict(record))
+
+        j = evaluator.sensitivity(known.u, predicted)
         c = known.variance * inverse(known.jacobian.T @ known.jacobian + j.T @ j)
         slope = np.array([p.slope(v) for p, v in zip(problem.parameters, known.values, strict=True)])
         found[names[variable]] = np.sqrt(np.diag(c)) * slope

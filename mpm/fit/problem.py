@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from mpm.config.fit import ranges
-from mpm.config.measured import target
+from mpm.config.measured import recorded
 from mpm.config.names import Names
 from mpm.config.variation import at_path
 from mpm.config.vary import Vary
@@ -102,8 +102,7 @@ class Problem:
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest u."""
-        return tuple(np.array([float(p.to_u(end)) for p, end in zip(self.parameters, ends, strict=True)]) for ends in
-                     ([p.low for p in self.parameters], [p.high for p in self.parameters]))  # fmt: skip
+        return np.array([float(p.to_u(p.low)) for p in self.parameters]), np.array([float(p.to_u(p.high)) for p in self.parameters])
 
     @property
     def size(self) -> int:
@@ -152,7 +151,7 @@ def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
 def curve_of(experiment: Any, name: str) -> Curve:
     """A measured curve as arrays."""
     curve = experiment.output.measured[name]
-    variable, units = target(experiment, name, curve)
+    variable, units = recorded(experiment, name, curve)
     if curve.equals is not None:
         sigma = None if curve.sigma is None else np.array([curve.sigma])
         return Curve(name, variable, None, np.array([curve.equals]), sigma, curve.weight, units)

@@ -27,8 +27,8 @@ class Side:
     aim: float  # u of the parameter, where the others are fitted now
     u: np.ndarray
     jacobian: np.ndarray
+    last: tuple[np.ndarray, np.ndarray]  # (u, r) of the last number
     places: list[tuple[float, float]] = field(default_factory=list)  # (u_k, rise)
-    last: tuple[np.ndarray, np.ndarray] | None = None  # (u, r) of the last number
     best: tuple[float, np.ndarray, np.ndarray] | None = None  # (S, u, r) at this place
     inner: int = 0
     state: str = "on"  # then: found, open, lost
@@ -44,7 +44,7 @@ def profile(evaluator: Evaluator, known: Known) -> list[Side]:
     sides = []
     for k in range(len(known.u)):
         for sign in (-1.0, 1.0):
-            side = Side(k, sign, known.u[k], known.u.copy(), known.jacobian.copy(), last=(known.u, known.residuals))
+            side = Side(k, sign, known.u[k], known.u.copy(), known.jacobian.copy(), (known.u, known.residuals))
             end = low[k] if sign < 0 else high[k]
             aim(side, known.u[k] + sign * half[k], known, low, high)
             if abs(end - known.u[k]) <= 1e-9 * (high[k] - low[k]):

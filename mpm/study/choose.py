@@ -100,8 +100,12 @@ def choose(experiment: Any, tolerance: float, fronts: list[dict] | None = None, 
         raise NoChoice(f"no chart of {kind} reaches {100 * tolerance:g} %")
     why_not, began = [], time.process_time()
     for method, settings, charts in ranked[:3]:
+
+        def named(text: str, method: str = method) -> None:
+            told(f"{method}, {text}")
+
         try:
-            cell, predicted, seconds, pilots = refine(experiment, settings, tolerance, lambda text, name=method: told(f"{name}, {text}"), began)
+            cell, predicted, seconds, pilots = refine(experiment, settings, tolerance, named, began)
         except NoChoice as why:
             why_not.append(f"{method}: {why}")
             continue

@@ -135,7 +135,7 @@ def phases(experiment, threads: int = 1) -> dict:
     if experiment.grid.dimension == 0 or not experiment.moving:
         return rigid(experiment)
     whole = Bench(experiment, threads)
-    found = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "without_ns": {}}
+    found: dict[str, Any] = {"particles": whole.particles, "step_ns": whole.step_ns(), "phases_ns": whole.phases(), "without_ns": {}}
     found["precision"], found["peaks"] = whole.work.buffers.nodes.dtype.name, peaks(whole.work.buffers.nodes.dtype)
     if whole.now.heat:
         found["heat_step_ns"] = 1e9 * seconds(whole.heat) / whole.particles

@@ -73,8 +73,8 @@ def extent(experiment: Any) -> float:
     """The smallest extent of a body [m]."""
     from mpm.scene.shapes import shape
 
-    bounds = [shape(body.shape, experiment.grid.dimension).bounds() for body in experiment.bodies.values()]
-    return min(float(np.min(upper - lower)) for lower, upper in bounds)
+    shapes: list[Any] = [shape(body.shape, experiment.grid.dimension) for body in experiment.bodies.values()]  # each kind has its own bounds
+    return min(float(np.min(np.subtract(upper, lower))) for lower, upper in (one.bounds() for one in shapes))
 
 
 def grids(experiment: Any) -> Iterator[float]:
@@ -237,7 +237,7 @@ class Gauge:
             return math.inf
         gaps = {name: left([h for h, _ in alike], [one[name] for _, one in alike]) for name in found}
         shares = {name: gap / (size(name, run.series, found[name]) if given is None or name.startswith("time_to_") else given) for name, gap in gaps.items()}
-        self.worst = max(shares, key=shares.get)
+        self.worst = max(shares, key=shares.__getitem__)
         return shares[self.worst]
 
 
@@ -252,9 +252,10 @@ def settled(cells: np.ndarray, values: np.ndarray) -> float:
     found = [fitted(cells[k : k + 3], values[k : k + 3]) for k in range(max(0, len(values) - 4), len(values) - 2)]
     if not found or found[-1] is None:
         return 1.0
-    if found[-1] < 1 or None in found or len(found) < 2 or abs(found[0] - found[1]) > AGREE:
-        return min(1.0, found[-1])
-    return min(2.0, max(1.0, min(found)))
+    known = [order for order in found if order is not None]
+    if known[-1] < 1 or len(known) < len(found) or len(found) < 2 or abs(known[0] - known[1]) > AGREE:
+        return min(1.0, known[-1])
+    return min(2.0, max(1.0, min(known)))
 
 
 def told_of(experiment: Any, finals: dict[str, float]) -> list[str]:

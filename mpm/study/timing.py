@@ -180,6 +180,7 @@ def cold(point: Any, halted) -> tuple[float | None, str]:
     with tempfile.TemporaryDirectory(prefix="mpm-cold-") as folder, tempfile.TemporaryFile() as said:
         surroundings = os.environ | {"MPM_CACHE_DIR": folder}
         started = subprocess.Popen([sys.executable, "-c", COLD], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said, env=surroundings)
+        assert started.stdin is not None  # a pipe
         started.stdin.write(json.dumps(point.resolved()).encode())
         started.stdin.close()
         while True:  # wait4 tells this child's own time, which the sum over all children could not

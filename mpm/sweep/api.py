@@ -12,6 +12,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from mpm.records.provenance import cores
@@ -226,7 +227,8 @@ def caution(experiment: Any) -> None:
     """A Python warning for what is valid in the config and seldom meant; the shell has lines of its own."""
     from mpm.config.cautions import cautions
 
-    level, frame = 1, sys._getframe()
+    level = 1
+    frame: FrameType | None = sys._getframe()
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "mpm":
         level, frame = level + 1, frame.f_back  # the line that is warned of is the user's
     for text in cautions(experiment):

@@ -38,14 +38,14 @@ class Beside:
     def __init__(self, out: Path):
         self.out, self.began, self.log = out, time.monotonic(), tempfile.TemporaryFile(mode="ab+")
         command = [sys.executable, "-P", "-c", START, str(out.resolve()), json.dumps(sys.path)]
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": self.log}
-        self.process = subprocess.Popen(command, **pipes, env={**os.environ, **ONE_THREAD})
+        environment = {**os.environ, **ONE_THREAD}
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, env=environment)
 
     def over(self) -> bool | None:
         """Whether it wrote a dataset; None while it works. OSError as it met it; NotCollected where it died."""
         if self.process.poll() is None:
             return None
-        said = self.process.stdout.read()
+        said = self.process.stdout.read() if self.process.stdout else b""
         words = ended("it", self.process, self.log)
         self.close()
         try:
@@ -67,7 +67,8 @@ class Beside:
     def close(self) -> None:
         """Release what this side holds."""
         for stream in (self.process.stdin, self.process.stdout, self.log):
-            stream.close()
+            if stream is not None:
+                stream.close()
 
 
 class Gather:
@@ -102,13 +103,13 @@ class Gather:
         """Whether the dataset does not hold just this already."""
         from mpm.sweep.collect import due
 
-        return bool(due(self.store, self.store.experiment(), self.lines))
+        return bool(due(self.store, self.store.claimed(), self.lines))
 
     def here(self) -> bool:
         """In this process: whether it was written."""
         from mpm.sweep.collect import collect
 
-        return collect(self.store, self.plan, self.store.experiment(), self.lines)
+        return collect(self.store, self.plan, self.store.claimed(), self.lines)
 
     def now_and_then(self, ran: int) -> None:
         """Called often while points run, with how many have. Trouble is told, and the sweep goes on."""
@@ -129,7 +130,7 @@ class Gather:
             self.paid(self.child.began if self.child else time.monotonic())
         except NotCollected as error:
             self.note(str(error))
-            self.paid(self.child.began)
+            self.paid(self.child.began if self.child else time.monotonic())
 
     def paid(self, began: float) -> None:
         """One is over."""

@@ -220,10 +220,10 @@ class Points:
 
     def coordinate(self, parameter: Parameter) -> Coordinate:
         """Values along the dimension: floats where all are numbers, else labels."""
-        raw = [float("inf") if value == ".inf" else value for value in self.columns[id(parameter)]]
+        raw: list[Any] = [float("inf") if value == ".inf" else value for value in self.columns[id(parameter)]]
         raw, alone = ([value[0] for value in raw], True) if all(isinstance(value, list) and len(value) == 1 for value in raw) else (raw, False)
         numbers = all(isinstance(value, float | int) and not isinstance(value, bool) for value in raw)
-        quantity = parameter.slot.step(0).quantity if alone else parameter.slot.quantity  # a place in 1-D is a number
+        quantity = parameter.slot.under(0).quantity if alone else parameter.slot.quantity  # a place in 1-D is a number
         values = np.array(raw, dtype=float) if numbers else np.array(labels(raw), dtype=object)
         units = quantity.units if quantity and numbers else "1" if numbers else ""
         return Coordinate(parameter.short, values, units, parameter.slot.description or parameter.short, parameter.spoken)

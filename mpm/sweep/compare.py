@@ -1,6 +1,7 @@
 """Compare: whether two datasets hold the same results. Times of day, wall times, attempts and the config's text do not count; what it resolves to does."""
 
 import contextlib
+import functools
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -98,7 +99,7 @@ def group(path: str, a: Any, b: Any, rtol: float, atol: float) -> list[str]:
             told.append(f"{place}: {dict(x.sizes)} and {dict(y.sizes)}")
         elif name == "run_id" and (foreign := int(np.sum(np.asarray(x.values != y.values)))):
             told.append(f"{place}: {foreign} of {x.size} points are of another config or version of the physics")
-        elif text := values(x.values, y.values, rtol, atol, lambda at, dims=x.dims: named(a, dims, at)):
+        elif text := values(x.values, y.values, rtol, atol, functools.partial(named, a, x.dims)):
             told.append(f"{place}: {text}")
     return [*told, *([f"{path}: {skipped} variables along {', '.join(map(str, other))} were not compared"] if skipped else [])]
 

@@ -26,21 +26,23 @@ def follow(places: np.ndarray, values: np.ndarray, level: float, until: float) -
     values = values - level
     triangles, over = Delaunay(places), values > 0
     cross = lambda i, j: places[i] + (places[j] - places[i]) * values[i] / (values[i] - values[j])  # noqa: E731
-    at, along, reach = [], [], []
+    crossings: list[np.ndarray] = []
+    sides: list[np.ndarray] = []
+    reach: list[float] = []
     for corners in triangles.simplices:
         met = [cross(i, j) for i, j in zip(corners, np.roll(corners, 1), strict=True) if over[i] != over[j]]
         if met:
-            at.append(np.mean(met, axis=0))
-            along.append(np.zeros(2))
-            reach.append(np.max(np.linalg.norm(places[corners] - at[-1], axis=1)))
+            crossings.append(np.mean(met, axis=0))
+            sides.append(np.zeros(2))
+            reach.append(float(np.max(np.linalg.norm(places[corners] - crossings[-1], axis=1))))
     for i, j in triangles.convex_hull:
         if over[i] != over[j]:
-            at.append(cross(i, j))
-            reach.append(np.linalg.norm(places[j] - places[i]))
-            along.append((places[j] - places[i]) / reach[-1])
-    if not at:
+            crossings.append(cross(i, j))
+            reach.append(float(np.linalg.norm(places[j] - places[i])))
+            sides.append((places[j] - places[i]) / reach[-1])
+    if not crossings:
         return np.empty((0, 2))
-    at, along = np.array(at), np.array(along)
+    at, along = np.array(crossings), np.array(sides)
     smooth = RBFInterpolator(places, tamed(places, values), kernel="cubic", degree=1, neighbors=100 if len(places) > MOST else None)
     slope = np.stack([smooth(at + STEP * axis) - smooth(at - STEP * axis) for axis in np.eye(2)], axis=1) / (2 * STEP)
     on_side = along.any(axis=1)

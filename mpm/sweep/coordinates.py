@@ -47,13 +47,13 @@ def fixed(plan: Any, swept: list[str], taken: set[str]) -> dict[str, Array]:
         if slot.quantity and path[0] != "output" and isinstance(value, int | float | str) and not varies:
             number = math.inf if value == ".inf" else value
             if isinstance(number, int | float) and not isinstance(path[-1], int):
-                rows[name] = (float(number), slot)
+                rows[name] = (float(number), slot.quantity, slot.description)
     words = Counter(name.rsplit(".", 1)[-1] for name in (*rows, *swept))
     blocked = taken | set(VARIABLES) | {dim.name for dim in plan.dims}
     found = {}
-    for name, (number, slot) in rows.items():
+    for name, (number, quantity, said) in rows.items():
         word = name.rsplit(".", 1)[-1]
-        attrs = {"units": slot.quantity.units, "long_name": slot.description or slot.quantity.name, "config_path": name}
+        attrs = {"units": quantity.units, "long_name": said or quantity.name, "config_path": name}
         found[word if words[word] == 1 and word not in blocked else name] = Array((), number, attrs)
     return found
 

@@ -90,7 +90,7 @@ class Engine:
         self.stopped = self.broken = ""
         self.asked = math.nan  # when all that runs was asked to leave
         self.began = time.monotonic()
-        self.executor: Executor | None = None
+        self.executor: Executor  # from `run` on
         self.resources = Resources(store.out, options.memory, far=options.scheduler not in (None, "local"))
 
     def signal(self, kind: str) -> None:
@@ -252,8 +252,8 @@ class Engine:
         """The record of a point that no worker could write."""
         from mpm.records.point import Record
 
-        calls = {"attempts": self.attempts[run_id], "source": source_hash(), "finished": now()}
-        record = Record(run_id, status, f"{STATUS[status]}: {why}", outcome, advice, **calls)
+        said = f"{STATUS[status]}: {why}"
+        record = Record(run_id, status, said, outcome, advice, attempts=self.attempts[run_id], source=source_hash(), finished=now())
         self.store.save(record)
         self.finish(record.line)
 

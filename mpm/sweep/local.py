@@ -19,7 +19,7 @@ from mpm.sweep.processes import ONE_THREAD, STALL, START_FAILURES
 from mpm.sweep.resources import Pulse
 
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[3]); from mpm.sweep.local import main; main()"
-QUIET = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
+QUIET: dict[str, list[str]] = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
 
 
 class Local:
@@ -74,7 +74,8 @@ class Local:
             child.kill()
         for child in self.children:
             child.wait()
-            child.stdin.close()
+            if child.stdin is not None:
+                child.stdin.close()
         self.cluster.close(timeout=0.8)
         self.folder.cleanup()
 

@@ -25,7 +25,8 @@ class Lock:
 
     def __init__(self, folder: Path, **more: Any):
         self.path, self.more = Path(folder) / "lock", more
-        self.descriptor, self.dead = -1, None
+        self.descriptor = -1
+        self.dead: dict | None = None
 
     def __enter__(self) -> "Lock":
         descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)

@@ -35,7 +35,7 @@ def outlook(
     first = points.cases[points.ids[due[0]]] if len(due) else plan.cases[0] if plan.cases else None
     cost = estimate(first.experiment) if first else {}
     explicit = not cost.get("mechanics", "explicit").startswith("implicit")
-    step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") and explicit else None
+    step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") and explicit and first else None
     return {
         "name": experiment.name,
         "title": experiment.title,

@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 from multiprocessing.connection import Connection, Pipe, wait
-from typing import Any
+from typing import Any, cast
 
 from mpm import cache
 from mpm.sweep.executors import BrokenWorkers, Event, Lost, Note, Task, event
@@ -127,7 +127,7 @@ class Processes:
         for child in [child for child in self.children.values() if not child.why and child.stalled()]:
             child.why = f"a worker did nothing for {STALL:.0f} s while it was {child.state}"
             child.process.kill()
-        for pipe in wait(list(self.children), timeout):
+        for pipe in cast(list[Connection], wait(list(self.children), timeout)):  # those that it was given
             child = self.children[pipe]
             try:
                 while pipe.poll():

@@ -40,4 +40,4 @@ def replaced(data: Any, path: Path, value: Any) -> Any:
     below = value if len(path) == 1 else replaced(data.get(key, {}) if isinstance(data, dict) else data[key], path[1:], value)
     if isinstance(data, dict):
         return {**data, key: below}
-    return [*data[:key], below, *data[key + 1 :]]
+    return [*data[: int(key)], below, *data[int(key) + 1 :]]

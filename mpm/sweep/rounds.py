@@ -61,7 +61,8 @@ class Rounds:
         self.refine = experiment.sweep and experiment.sweep.refine
         self.derive, self.axis = derive or {}, axis  # axis: the one path is a dimension of its own in the dataset
         self.options, self.reporter = options or Options(), reporter or Reporter()
-        self.store, self.ran, self.asked, self.compiling = Store(out), 0, {}, 0.0
+        self.store, self.ran, self.compiling = Store(out), 0, 0.0
+        self.asked: dict[str, tuple[float, ...]] = {}
         self.executor: Any = None
         self.stack = contextlib.ExitStack()
         self.engine: Engine | None = None
@@ -85,7 +86,8 @@ class Rounds:
 
     def heed(self, beat: Any) -> None:
         """A beat of a point in this process goes to the engine of its round."""
-        self.engine.heed(beat)
+        if self.engine is not None:
+            self.engine.heed(beat)
 
     def sweep(self, points: Sequence[Sequence[float]]) -> Any:
         """The experiment with these points alone."""
@@ -167,5 +169,5 @@ class Rounds:
         self.store.claim(experiment, swept_paths(plan), self.options.smoke, take_over=False)
         points = Points.of(plan)
         lines, _ = self.store.lines(points.ids)
-        collect(self.store, plan, self.store.experiment(), lines)
+        collect(self.store, plan, self.store.claimed(), lines)
         return plan, counts(points, lines, skipped(plan))

@@ -51,8 +51,10 @@ def plan(experiment: Experiment, max_runs: int = 10_000) -> Cases:
 def settings(experiment: Experiment, root: Any) -> list[tuple[str, str, int, dict[str, Any]]]:
     """(method, path, place along it, {parameter: value}) of every setting."""
     rows: list[tuple[str, str, int, dict[str, Any]]] = []
-    for method, line in experiment.chart.methods.items():
-        paths = experiment.chart.refine if line.refine is None else line.refine
+    if (chart := experiment.chart) is None:
+        return rows
+    for method, line in chart.methods.items():
+        paths = chart.refine if line.refine is None else line.refine
         for path, refined in paths.items():
             lengths = {len(values) for values in refined.values()}
             if len(lengths) > 1:
@@ -94,7 +96,10 @@ def standing(experiment: Experiment, name: str) -> tuple[Any, Any, str]:
         return "none", None, name
     value: Any = experiment.resolved()
     for key in path:
-        value = value[key] if (isinstance(value, dict) and key in value) or (isinstance(value, list) and isinstance(key, int) and key < len(value)) else None
+        if isinstance(value, list):
+            value = value[key] if isinstance(key, int) and key < len(value) else None
+        else:
+            value = value.get(key) if isinstance(value, dict) else None
     slot = names.slots.get(path)
     return ("none" if value is None else value), slot, names.spoken.get(path) or ".".join(map(str, path))
 

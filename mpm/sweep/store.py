@@ -16,9 +16,9 @@ import itertools
 import json
 import os
 import secrets
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sized
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
 from mpm.records.provenance import versions
@@ -30,6 +30,10 @@ from mpm.sweep.summaries import Summaries
 BATCH = "batch-"
 FOLDER = 1000  # batches a folder
 FEW = 100  # points that are looked for one by one rather than by listing folders
+
+
+class Several(Sized, Iterable[str], Protocol):
+    """What can be counted and gone over."""
 
 
 class Store:
@@ -68,7 +72,7 @@ class Store:
             path.unlink(missing_ok=True)
         return len(left)
 
-    def own(self, run_ids: Collection[str]) -> set[str]:
+    def own(self, run_ids: Several) -> set[str]:
         """Those of the points that have a file of their own."""
         if len(run_ids) < FEW:
             return {run_id for run_id in run_ids if self.path(run_id).exists()}
@@ -130,6 +134,7 @@ class Store:
         for run_id, name in self.places(run_ids).items():
             by_file.setdefault(name, []).append(run_id)
         for name, members in by_file.items():
+            found: dict[str, Any]
             try:
                 if name.startswith(BATCH):
                     found = {record.run_id: record for record in read_batch(self.path(name))}
@@ -200,14 +205,14 @@ class Store:
 
     def news(self, run_ids: list[str], batch: str) -> list[dict]:
         """Summaries of a task's points, those that are whole, wherever its worker may have put them."""
-        found: dict[str, dict] = {}
+        found: dict[str, dict | None] = {}
         with contextlib.suppress(DamagedFile):
             for line in (summary(self.path(batch)) or {"points": []})["points"] if batch else ():
                 found[line["run_id"]] = line
         for run_id in self.own(run_ids):
             with contextlib.suppress(DamagedFile):
                 found[run_id] = point_line(self.path(run_id)) or found.get(run_id)
-        return [found[run_id] for run_id in run_ids if found.get(run_id)]
+        return [line for run_id in run_ids if (line := found.get(run_id))]
 
     def set_aside(self, name: str) -> Path:
         """Move a damaged file (of a point, or of a batch) out of the way, so that its points run again; nothing is deleted."""
@@ -217,6 +222,12 @@ class Store:
     def experiment(self) -> dict | None:
         """What experiment.json says; None for a new folder."""
         return read_manifest(self.out / "experiment.json")
+
+    def claimed(self) -> dict:
+        """What experiment.json says of a folder that was claimed; FileNotFoundError where somebody has taken it away since."""
+        if (found := self.experiment()) is None:
+            raise FileNotFoundError(errno.ENOENT, "it is not there any more", str(self.out / "experiment.json"))
+        return found
 
     def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep", join: bool = False) -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.

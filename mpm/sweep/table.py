@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.records.frames import Frame
+from mpm.records.frames import Entries, Frame, Stream
 from mpm.records.large import Parts
 from mpm.records.netcdf import Array, Group
 from mpm.records.point import Record
@@ -60,7 +60,8 @@ class Table:
         self.apart = False  # whether the points' grids differ
         self.rows: list[tuple[int, np.ndarray, Any]] = []  # place, times and frames of records that have particles
         self.sources: set[str] = set()
-        self.started, self.finished, self.facts = "", "", {}
+        self.started, self.finished = "", ""
+        self.facts: dict[str, Any] = {}
         for case in plan.cases:
             self.status[case.flat], self.text["run_id"][case.flat] = PENDING, case.run_id
             if self.place.setdefault(case.run_id, case.flat) != case.flat:
@@ -108,7 +109,7 @@ class Table:
         if self.series_over.keep and self.count * len(record.times) * 8 * len(record.series) > SERIES:
             self.series_over.drop()
         self.series_over.add(place, record.times, record.series, ok)
-        grid, frames = record.grid, record.frames.opened() if isinstance(record.frames, Sequence) else None
+        grid, frames = record.grid, record.frames.opened() if isinstance(record.frames, Entries | Stream) else None
         if frames is not None and record.axes:
             shots = [frame.grid for frame in frames]
             grid = {name: np.stack([shot[name] for shot in shots]) for name in shots[0]}
@@ -127,7 +128,7 @@ class Table:
 
     def root(self, swept: list[str]) -> Group:
         """One number a point."""
-        meanings = {
+        meanings: dict[str, dict[str, Any]] = {
             "status": {"flag_values": np.arange(len(STATUS), dtype=np.int8), "flag_meanings": " ".join(STATUS)},
             "warnings": {"flag_meanings": " ".join(KINDS)},
             "warning_flags": {"flag_masks": 1 << np.arange(len(KINDS), dtype=np.int32), "flag_meanings": " ".join(KINDS)},
@@ -161,11 +162,11 @@ class Table:
 
     def measured(self) -> dict[str, Array]:
         """Measured curves of the config, each over its own times."""
-        from mpm.config.measured import target
+        from mpm.config.measured import recorded
 
         found, experiment = {}, self.plan.cases[0].experiment if self.plan.cases else None
         for name, curve in experiment.output.measured.items() if experiment is not None else ():
-            (variable, units), dim = target(experiment, name, curve), f"measured_time_{name}"
+            (variable, units), dim = recorded(experiment, name, curve), f"measured_time_{name}"
             if not curve.samples:
                 continue  # one number a run: its misfit says it
             samples, known = np.array([row[:2] for row in curve.samples]), f"measured_{variable}"
@@ -177,10 +178,10 @@ class Table:
     def grid(self) -> Group:
         """Fields on the grid."""
         group = Group()
-        if not self.outside and self.axes is None:
-            return group
         if self.outside or self.apart:
             return self.elsewhere()
+        if self.axes is None:
+            return group
         time, columns = self.fields.laid()
         names = tuple(name for name in reversed(AXES) if name in self.axes)
         group.variables["snapshot"] = described("snapshot", ("snapshot",), time)
@@ -237,7 +238,7 @@ class Rows(Sequence):
     def __len__(self) -> int:
         return len(self.ends)
 
-    def __getitem__(self, k: int) -> Frame:
+    def __getitem__(self, k: int) -> Frame:  # type: ignore[override]  # one at a time: no slices
         return Frame(float(self.times[k]), {}, {name: self.part(k, name) for name in self.particles})
 
     def part(self, k: int, name: str) -> np.ndarray:
@@ -246,9 +247,9 @@ class Rows(Sequence):
 
 def misfit(experiment: Any, name: str, curve: Any) -> dict[str, str]:
     """Unit and long name of how far a point is from a measured curve."""
-    from mpm.config.measured import target
+    from mpm.config.measured import recorded
 
-    variable, units = target(experiment, name, curve)
+    variable, units = recorded(experiment, name, curve)
     long_name = describe(variable, None, experiment.output.probes).long_name
     return {"units": units, "long_name": f"{'' if curve.equals is not None else 'root-mean-square '}difference from the measured {long_name} ({name})"}
 

@@ -53,7 +53,8 @@ def results(task: Task, runner: str, stopped: Callable[[str, float, float], str]
 
     if len(task.jobs) > 1 and (found := together(task, runner)) is not None:
         return found, []
-    records, why = [], ""
+    records: list[Any] = []
+    why = ""
     for place, job in enumerate(task.jobs):
 
         def beat(fraction: float, when: float, run_id: str = job.run_id) -> bool:
@@ -63,7 +64,7 @@ def results(task: Task, runner: str, stopped: Callable[[str, float, float], str]
 
         if len(task.jobs) > 1 and beat(0.0, 0.0):
             return records, [other.run_id for other in task.jobs[place:]]
-        record = compute(job.run_id, lambda config=job.config: restore(config), runner, beat, keeper, attempts=job.attempt, config=job.config)
+        record = compute(job.run_id, functools.partial(restore, job.config), runner, beat, keeper, attempts=job.attempt, config=job.config)
         if record.outcome == "budget" and (why == "cancel" or (why and len(task.jobs) > 1)):
             return records, [other.run_id for other in task.jobs[place:]]
         records.append(record)
