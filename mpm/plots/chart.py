@@ -96,7 +96,7 @@ def rival(ax: Any, data: Any) -> list[Any]:
     for k, name in enumerate(dict.fromkeys(peer)):
         rows = np.flatnonzero(peer == name)
         rows = rows[np.argsort(data["peer_min"].values[rows])]
-        look = {"color": "#6b6b6b", "marker": PEER[k % len(PEER)], "ms": 9, "lw": 1.2, "ls": DASHES[k % len(DASHES)], "mec": "white", "mew": 0.5}
+        look: dict[str, Any] = {"color": QUIET, "marker": PEER[k % len(PEER)], "ms": 9, "lw": 1.2, "ls": DASHES[k % len(DASHES)], "mec": "white", "mew": 0.5}
         ax.plot(data["peer_min"].values[rows], data["peer_error"].values[rows], zorder=3, **look)
         handles.append(Line2D([], [], label=name, **look))
     return [heading("beside it"), *handles]

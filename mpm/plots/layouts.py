@@ -18,7 +18,7 @@ def overview(view: View) -> Any:
         if view.design is not None:
             from mpm.plots import refined, sample
 
-            return sample.scatter(view) if refined.asked(view) is None else refined.plane(view)
+            return refined.plane(view) if refined.asked(view) else sample.scatter(view)
         return swept(view) if view.axes and view.finals else single(view)
 
 
@@ -35,7 +35,7 @@ def nothing(view: View) -> Any:
     rows = [f"{count} ×  {text}" for text, count in list(reasons.items())[:8]]
     if len(reasons) > 8:
         rows.append(f"and {len(reasons) - 8} other reasons")
-    under = {"xycoords": "axes fraction", "xytext": (0, -30), "textcoords": "offset points"}
+    under: dict[str, Any] = {"xycoords": "axes fraction", "xytext": (0, -30), "textcoords": "offset points"}
     ax.annotate("\n".join(rows), (0.0, 0.95), fontsize=10.5, color=QUIET, va="top", linespacing=1.6, **under)
     return fig
 

@@ -1,5 +1,6 @@
 """The figure of two refined axes: every point in its place, coloured by the answer that refinement follows, and the line on which it crosses the level."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,23 +20,26 @@ SIDES = LinearSegmentedColormap.from_list("sides", [OKABE_ITO[0], "#e8f0f6", "#f
 FAR = 80  # percentile of the distance from the level at which colours are full
 
 
-def asked(view: View) -> tuple[str, float | None] | None:
-    """(answer, level) where the dataset is that of two refined axes; None elsewhere."""
-    refine = (view.config.get("sweep") or {}).get("refine") or {}
-    name = dataset_name(refine.get("of", ""))
-    return (name, refine.get("level")) if name in view.root and view.design is not None and len(view.parameters) == 2 else None
+def refined(view: View) -> dict[str, Any]:
+    """What the config says of refinement."""
+    return (view.config.get("sweep") or {}).get("refine") or {}
+
+
+def asked(view: View) -> bool:
+    """Whether the dataset is that of two refined axes."""
+    return dataset_name(refined(view).get("of", "")) in view.root and view.design is not None and len(view.parameters) == 2
 
 
 def plane(view: View) -> Any:
     """Both parameters, the points, and the line."""
-    name, level = asked(view)
+    name, level = dataset_name(refined(view)["of"]), refined(view).get("level")
     x, y = view.parameters
     scale, values = view.scale(name), view.root[name].values.astype(float)
     known = view.ok & np.isfinite(values)
     u, v, shown = x.positions, y.positions, scale(values)
     low, high = float(shown[known].min()), float(shown[known].max())
-    at = None if level is None else float(scale(level))
-    sides = at is not None and low < at < high
+    at = math.nan if level is None else float(scale(level))
+    sides = low < at < high
     log_x, log_y = spread_in_logarithm(u), spread_in_logarithm(v)
     fig = figure(view.title, 6.4)
     ax = fig.add_subplot()

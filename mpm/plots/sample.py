@@ -6,6 +6,7 @@ show an effect. Below FEWEST points there are no bars, as an interval from so fe
 which makes the intervals somewhat too wide rather than too narrow.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,8 @@ from mpm.plots.view import Axis, View
 FEWEST = 10
 RESAMPLES = 2000
 MOST_PARAMETERS = 6
-TRIANGLE = {"color": OKABE_ITO[0], "mfc": "white", "ms": 5, "mew": 1.2, "ls": "None", "marker": "^"}  # a threshold that was not reached
-RING = {"color": OKABE_ITO[0], "mfc": "white", "ms": 4, "mew": 1.2, "ls": "None"}  # a point with warnings
+TRIANGLE: dict[str, Any] = {"color": OKABE_ITO[0], "mfc": "white", "ms": 5, "mew": 1.2, "ls": "None", "marker": "^"}  # a threshold that was not reached
+RING: dict[str, Any] = {"color": OKABE_ITO[0], "mfc": "white", "ms": 4, "mew": 1.2, "ls": "None"}  # a point with warnings
 
 
 def scatter(view: View, most: int = 3) -> Any:
@@ -35,7 +36,7 @@ def scatter(view: View, most: int = 3) -> Any:
     curves = [name for name in view.series_names() if view.measured(name) is not None][:4]
     below = 3.9 if curves else 0.0
     fig = figure(view.title, 1.1 + 2.35 * len(names) + below)
-    upper, lower = fig.subfigures(2, 1, height_ratios=[1.1 + 2.35 * len(names), below]) if curves else (fig, None)
+    upper, lower = fig.subfigures(2, 1, squeeze=False, height_ratios=[1.1 + 2.35 * len(names), below])[:, 0] if curves else (fig, fig)
     grid = upper.subplots(len(names), columns + 1, squeeze=False, sharey=False, width_ratios=[1.0] * columns + [1.25])
     bad = view.reasons.astype(bool)
     for i, name in enumerate(names):
@@ -164,7 +165,7 @@ def bars(ax: Any, view: View, parameters: list[Axis], blocks: list[np.ndarray], 
 def groups(view: View, ok: np.ndarray) -> np.ndarray:
     """Which point of the sample each value belongs to: they are resampled together."""
     shape = [view.sizes[dim] if dim == view.design else 1 for dim in view.dims]
-    return np.broadcast_to(np.arange(view.sizes[view.design]).reshape(shape), view.status.shape)[ok]
+    return np.broadcast_to(np.arange(math.prod(shape)).reshape(shape), view.status.shape)[ok]
 
 
 def ranks(values: np.ndarray) -> np.ndarray:

@@ -20,16 +20,17 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     """Series `names` (one unit) over time; one colour a value of `lines`, one dash a series. Without `lines`, one colour a series."""
     time = np.asarray(view.series["time"].values, dtype=float)
     clock, scale = words.scale(time, "s"), together(view, names)
-    indices = [None] if lines is None else picked(lines, at, [i for i in range(lines.size) if any(known(view, name, {**at, lines.dim: i}) for name in names)])
+    indices: list[int] = []
+    if lines is not None:
+        indices = picked(lines, at, [i for i in range(lines.size) if any(known(view, name, {**at, lines.dim: i}) for name in names)])
     colours = OKABE_ITO if lines is None else lines.colours()
     ended = False
-    for i in indices:
-        here = at if lines is None else {**at, lines.dim: i}
+    for i, here in [(0, at)] if lines is None else [(i, {**at, lines.dim: i}) for i in indices]:
         for j, name in enumerate(names):
             colour, dash = (colours[j % len(colours)], "-") if lines is None else (colours[i], DASHES[j % len(DASHES)])
-            values = row(view, name, here)
-            ax.plot(clock(time), scale(values), color=colour, ls=dash, zorder=3)
-            ended |= stopped(ax, view, here, clock(time), scale(values), colour)
+            drawn = scale(row(view, name, here))
+            ax.plot(clock(time), drawn, color=colour, ls=dash, zorder=3)
+            ended |= stopped(ax, view, here, clock(time), drawn, colour)
             crossings(ax, view, name, here, clock, colour)
     for name in names:
         levels(ax, view, name)
@@ -45,7 +46,7 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
         ax.set_xlim(right=1.03 * clock(time[-1]))  # what was measured long after the run's end answers nothing
     kinds = entries(view, names, lines) if len(names) > 1 or dots else []
     cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
-    values = []
+    values: list[Any] = []
     if lines is not None:
         texts = words.numbers(lines.values[indices]) if not lines.category else [lines.text(i) for i in indices]
         values = [heading(lines.title), *(Line2D([], [], color=colours[i], label=text) for i, text in zip(indices, texts, strict=True))]
@@ -54,8 +55,8 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
 
 def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
     """Legend entries of the series: colours, or dashes where colours tell the swept value."""
-    looks = [{"color": OKABE_ITO[j % len(OKABE_ITO)]} if lines is None else {"color": INK, "ls": DASHES[j % len(DASHES)]} for j in range(len(names))]
-    return [Line2D([], [], label=called(view, name), **look) for name, look in zip(names, looks, strict=True)]
+    looks = [(OKABE_ITO[j % len(OKABE_ITO)], DASHES[0]) if lines is None else (INK, DASHES[j % len(DASHES)]) for j in range(len(names))]
+    return [Line2D([], [], color=colour, ls=dash, label=called(view, name)) for name, (colour, dash) in zip(names, looks, strict=True)]
 
 
 def picked(lines: Axis, at: dict[str, int], there: list[int]) -> list[int]:

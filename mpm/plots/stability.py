@@ -42,7 +42,7 @@ class Figure:
         causes: dict[str, int] = {}
         for cause in self.points.outcome.values[self.points.is_beyond.values == 1]:
             causes[str(cause)] = causes.get(str(cause), 0) + 1
-        self.causes = sorted(causes, key=causes.get, reverse=True)
+        self.causes = sorted(causes, key=causes.__getitem__, reverse=True)
         self.norm = self.rates()
 
     def draw(self) -> Any:
@@ -96,8 +96,12 @@ class Figure:
         outcome = self.points.outcome.values[mine]
         ok = beyond == 0
         ax.set_title(self.panels[index])
-        (ax.set_xscale("log"), plain_ticks(ax.xaxis)) if self.log_x else None
-        (ax.set_yscale("log"), plain_ticks(ax.yaxis)) if self.log_y else None
+        if self.log_x:
+            ax.set_xscale("log")
+            plain_ticks(ax.xaxis)
+        if self.log_y:
+            ax.set_yscale("log")
+            plain_ticks(ax.yaxis)
         ax.scatter(at[ok], along[ok], s=9, color=WITHIN, alpha=0.55, lw=0, zorder=2)
         for number, cause in enumerate(self.causes):
             here = ~ok & (outcome == cause)
@@ -128,7 +132,7 @@ class Figure:
             named = dict(zip(map(str, self.root.line_label.values), self.looks(), strict=True))  # lines of one name are one entry
             lines = [Line2D([], [], label=label, **look) for label, look in named.items()]
         entries = [*marks, *lines]
-        longest = max(len(entry.get_label()) for entry in entries)
+        longest = max(len(str(entry.get_label())) for entry in entries)
         fig.legend(handles=entries, loc="outside lower left", ncols=min(len(entries), max(2, 150 // (longest + 9))), handlelength=2.6)
 
     def looks(self) -> list[dict[str, Any]]:

@@ -16,6 +16,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
@@ -34,7 +35,7 @@ LONGEST = 150  # letters of a title
 LINE = 84  # letters of a line of it
 SMALLEST, LARGEST = 1e-3, 1e5  # of an axis in plain numbers
 MARKS = ("x", "+", "1", "2", "3", "4")
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.size": 10,
     "axes.titlesize": 10.5,
     "axes.titlelocation": "left",
@@ -92,8 +93,7 @@ class Picture(Figure):
 
 def figure(title: str, height: float) -> Figure:
     """An empty figure with its title."""
-    fig = Picture(figsize=(WIDTH, height), layout="constrained")
-    fig.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.04, hspace=0.06)
+    fig = Picture(figsize=(WIDTH, height), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.1, wspace=0.04, hspace=0.06))
     title = title if len(title) <= LONGEST else title[: LONGEST - 1] + "…"
     fig.suptitle(title if len(title) <= LINE else wrapped(title, LINE), x=0.012, ha="left")
     return fig

@@ -28,7 +28,8 @@ class View:
     """A dataset tree as figures see it."""
 
     def __init__(self, tree: Any):
-        self.wanted = self.along = None  # the final that was asked for, and the parameter that it is to be drawn over
+        self.wanted: str | None = None  # the final that was asked for
+        self.along: str | None = None  # the parameter that it is to be drawn over
         self.root = tree.to_dataset()
         self.groups = {name: tree[name].to_dataset() for name in ("series", "grid", "particles") if name in tree.children}
         self.series: Any = self.groups.get("series")  # None in a dataset without series: then there are no `series_names` either

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mpm.sweep.manifest import claimed
 from mpm.sweep.processes import ONE_THREAD, ended
 from mpm.sweep.resources import output
 from mpm.sweep.store import Store
@@ -103,13 +104,13 @@ class Gather:
         """Whether the dataset does not hold just this already."""
         from mpm.sweep.collect import due
 
-        return bool(due(self.store, self.store.claimed(), self.lines))
+        return bool(due(self.store, claimed(self.store.out), self.lines))
 
     def here(self) -> bool:
         """In this process: whether it was written."""
         from mpm.sweep.collect import collect
 
-        return collect(self.store, self.plan, self.store.claimed(), self.lines)
+        return collect(self.store, self.plan, claimed(self.store.out), self.lines)
 
     def now_and_then(self, ran: int) -> None:
         """Called often while points run, with how many have. Trouble is told, and the sweep goes on."""

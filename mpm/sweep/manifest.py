@@ -1,5 +1,6 @@
 """experiment.json: what a sweep's folder holds, as plain JSON whose last entry is the SHA-256 of all before it."""
 
+import errno
 import hashlib
 import json
 from pathlib import Path
@@ -21,6 +22,13 @@ def write_manifest(path: Path, about: dict[str, Any]) -> None:
 def closing(head: bytes) -> bytes:
     """The end of the file."""
     return MARK + hashlib.sha256(head).hexdigest().encode() + b'"\n}'
+
+
+def claimed(out: Path) -> dict:
+    """What it says of a folder that a sweep is using; FileNotFoundError where somebody has taken it away since."""
+    if (found := read_manifest(out / "experiment.json")) is None:
+        raise FileNotFoundError(errno.ENOENT, "it is not there any more", str(out / "experiment.json"))
+    return found
 
 
 def read_manifest(path: Path) -> dict | None:

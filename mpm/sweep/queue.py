@@ -73,6 +73,9 @@ class Due:
         yield from (self.ids[number] for number in self.numbers[self.at :])
         yield from self.back
 
+    def __contains__(self, run_id: object) -> bool:
+        return any(run_id == one for one in self)
+
     @property
     def first(self) -> str:
         """The next."""

@@ -17,6 +17,7 @@ from mpm.config.sweep import Sweep
 from mpm.sweep.api import signals, skipped, sound, swept_paths, taken
 from mpm.sweep.cases import plan as plan_of
 from mpm.sweep.engine import Engine, Options
+from mpm.sweep.manifest import claimed
 from mpm.sweep.queue import EXIT, Points, counts
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Store
@@ -169,5 +170,5 @@ class Rounds:
         self.store.claim(experiment, swept_paths(plan), self.options.smoke, take_over=False)
         points = Points.of(plan)
         lines, _ = self.store.lines(points.ids)
-        collect(self.store, plan, self.store.claimed(), lines)
+        collect(self.store, plan, claimed(self.store.out), lines)
         return plan, counts(points, lines, skipped(plan))

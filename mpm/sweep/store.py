@@ -16,9 +16,9 @@ import itertools
 import json
 import os
 import secrets
-from collections.abc import Iterable, Iterator, Sized
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from mpm.records.netcdf import DamagedFile, set_aside, summary, sync_folder, write_whole
 from mpm.records.provenance import versions
@@ -30,10 +30,6 @@ from mpm.sweep.summaries import Summaries
 BATCH = "batch-"
 FOLDER = 1000  # batches a folder
 FEW = 100  # points that are looked for one by one rather than by listing folders
-
-
-class Several(Sized, Iterable[str], Protocol):
-    """What can be counted and gone over."""
 
 
 class Store:
@@ -72,7 +68,7 @@ class Store:
             path.unlink(missing_ok=True)
         return len(left)
 
-    def own(self, run_ids: Several) -> set[str]:
+    def own(self, run_ids: Collection[str]) -> set[str]:
         """Those of the points that have a file of their own."""
         if len(run_ids) < FEW:
             return {run_id for run_id in run_ids if self.path(run_id).exists()}
@@ -134,10 +130,9 @@ class Store:
         for run_id, name in self.places(run_ids).items():
             by_file.setdefault(name, []).append(run_id)
         for name, members in by_file.items():
-            found: dict[str, Any]
             try:
                 if name.startswith(BATCH):
-                    found = {record.run_id: record for record in read_batch(self.path(name))}
+                    found: dict[str, Any] = {record.run_id: record for record in read_batch(self.path(name))}
                 else:
                     found = {name: read(self.path(name), fields)}
             except DamagedFile as error:
@@ -222,12 +217,6 @@ class Store:
     def experiment(self) -> dict | None:
         """What experiment.json says; None for a new folder."""
         return read_manifest(self.out / "experiment.json")
-
-    def claimed(self) -> dict:
-        """What experiment.json says of a folder that was claimed; FileNotFoundError where somebody has taken it away since."""
-        if (found := self.experiment()) is None:
-            raise FileNotFoundError(errno.ENOENT, "it is not there any more", str(self.out / "experiment.json"))
-        return found
 
     def claim(self, experiment: Any, swept: list[str], smoke: bool, take_over: bool, kind: str = "sweep", join: bool = False) -> None:
         """Say in experiment.json what the folder holds. Refused where it holds another experiment, unless `take_over`.
