@@ -12,7 +12,7 @@ def unseen(*modules: str) -> Iterator[None]:
     For packages that others import to take their arrays, of which there are none here: dask costs 1 s and 9 MB or more. What is imported meanwhile does without
     for good, so this is for a command's own process.
     """
-    hidden = [module for module in modules if sys.modules.setdefault(module, None) is None]
+    hidden = [module for module in modules if sys.modules.setdefault(module, None) is None]  # type: ignore[arg-type]  # what Python itself takes for: not there
     try:
         yield
     finally:
