@@ -122,11 +122,12 @@ def said(base: type[Kind], field: str) -> Any:
     return doc(description=base.model_fields[field].description)
 
 
-def fields_of(base: type[Kind], value: Any, area: Any) -> Any:
+def fields_of(base: Any, value: Any, area: Any) -> Any:
     """(name, (type, field)) of what carries the unit in a law: numbers, or lists of them."""
     for name in (*base.values, *getattr(base, "areas", ())):
         one = value if name in base.values else area
-        yield name, (one if base.model_fields[name].annotation is float else tuple[one, ...], said(base, name))
+        several = base.model_fields[name].annotation is not float
+        yield name, (tuple[one, ...] if several else one, said(base, name))  # type: ignore[valid-type]  # a type of pydantic's, made here
 
 
 class Law(Menu):
