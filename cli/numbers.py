@@ -14,18 +14,18 @@ OTHER = "more"
 
 
 def lines(record: Any, experiment: Any, everything: bool = False) -> list[str]:
-    """A line a number. Without `everything` those that the config lists, and its probes'; all of them where it lists nothing."""
+    """A line a number. Without `everything` those that the config lists, and its probes'; where it lists nothing all that are not zero."""
     from mpm.records.variables import dataset_name
 
     asked = [dataset_name(name) for name in experiment.output.observables]
     asked += [f"{what}_{probe}" for probe in experiment.output.probes for what in ("temperature", "misfit")]
     first = [name for name in dict.fromkeys(asked) if name in record.finals]
     rest = [name for name in record.finals if name not in first]
+    left = [] if everything else rest if first else [name for name in rest if record.finals[name] == 0]
     groups = {"asked for": first} if first else {}
-    if everything or not first:
-        for name in rest:
-            family = next((title for title, starts in FAMILIES.items() if name.startswith(starts)), OTHER)
-            groups.setdefault(family, []).append(name)
+    for name in (name for name in rest if name not in left):
+        family = next((title for title, starts in FAMILIES.items() if name.startswith(starts)), OTHER)
+        groups.setdefault(family, []).append(name)
     told = [(title, [row(name, record.finals[name], experiment) for name in names]) for title, names in groups.items()]
     every = [one for _, rows in told for one in rows]
     widths = [max((len(one[column]) for one in every), default=0) for column in (0, 1)]
@@ -33,8 +33,8 @@ def lines(record: Any, experiment: Any, everything: bool = False) -> list[str]:
     for title, rows in told:
         made.append(f"{title}:")
         made += [f"  {label:<{widths[0]}}  {value:<{widths[1]}}  {name}" for label, value, name in rows]
-    if first and rest and not everything:
-        made.append(f"  ({len(rest)} more with --all)")
+    if left:
+        made.append(f"  ({len(left)} {'more' if first else 'of 0'} with --all)")
     return made
 
 

@@ -19,6 +19,7 @@ from mpm.text import visible
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
 BESIDE = 0.6  # of the particles' extent
 BALLS = 3.0  # square points of a dot that is large enough to be shaded as a ball
+LEAST = 1e-6  # Pa: less is round-off
 LETTERS = 14  # of a title in an inch of its panel
 SAMPLES = 12  # snapshots that the limits of colour and space are taken from
 SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
@@ -51,7 +52,7 @@ class Look:
 def looks(found: Results, shown: list[Point], of: str | None) -> Look:
     """The look that fits all points: limits of space and colour from a few of their snapshots."""
     some = [point.shots[int(k)] for point in shown for k in np.unique(np.linspace(0, len(point.shots) - 1, SAMPLES).round())]
-    field, on_grid = chosen(some[0], of)
+    field, on_grid = chosen(some, of)
     values = np.concatenate([valued(frame, field, on_grid).ravel() for frame in some])
     units = VARIABLES[field].units if field in VARIABLES else "1"
     scale = words.scale(values, units, words.is_temperature(field))
@@ -86,8 +87,9 @@ def with_tools(box: np.ndarray, config: dict[str, Any], some: list[Any], mirrore
     return np.array([np.minimum(box[0], low), np.maximum(box[1], high)])
 
 
-def chosen(frame: Any, of: str | None) -> tuple[str, bool]:
-    """The field to show, and whether it is the grid's."""
+def chosen(frames: list[Any], of: str | None) -> tuple[str, bool]:
+    """The field to show, and whether it is the grid's: of those that differ from place to place or in time the first of FIRST."""
+    frame = frames[0]
     here = "position" in frame.particles
     particles = [name for name in frame.particles if name not in ("position", "id")] if here else []
     if of is not None:
@@ -96,8 +98,16 @@ def chosen(frame: Any, of: str | None) -> tuple[str, bool]:
         raise MovieError(f"the snapshots have no field {visible(of)!r}; there are {', '.join(dict.fromkeys([*particles, *frame.grid])) or 'none'}")
     for names, on_grid in ((particles, False), (list(frame.grid), True)):
         if names:
-            return next((name for name in FIRST if name in names), names[0]), on_grid
+            order = [*(name for name in FIRST if name in names), *(name for name in names if name not in FIRST)]
+            return next((name for name in order if differs(frames, name, on_grid)), order[0]), on_grid
     return "position", False
+
+
+def differs(frames: list[Any], field: str, on_grid: bool) -> bool:
+    """Whether a field has different values, beyond round-off."""
+    values = np.concatenate([valued(frame, field, on_grid).ravel() for frame in frames])
+    values, floor = values[np.isfinite(values)], LEAST if VARIABLES.get(field) and VARIABLES[field].units == "Pa" else 0.0
+    return bool(values.size and np.ptp(values) > max(1e-6 * np.abs(values).max(), floor))
 
 
 def valued(frame: Any, field: str, on_grid: bool) -> np.ndarray:

@@ -215,12 +215,17 @@ class View:
         return isinstance(spans[0], dict) and "log" in spans[0] if spans else None
 
     def series_names(self) -> list[str]:
-        """Series with a number somewhere, probes first, then what the config lists; all of them where it lists nothing."""
+        """Series with a number somewhere, probes first, then what the config lists; those that change where it lists nothing."""
         if self.series is None:
             return []
         there = [str(name) for name, row in self.series.data_vars.items() if "time" in row.dims and np.isfinite(row.values).any()]
         wanted = [name for name in dict.fromkeys([*self.probes, *self.listed]) if name in there]
-        return wanted or there
+        return wanted or [name for name in there if self.changes(name)] or there
+
+    def changes(self, name: str) -> bool:
+        """Whether a series changes with time by more than round-off."""
+        values, units = self.series[name].values[np.isfinite(self.series[name].values)], self.series[name].attrs.get("units", "1")
+        return bool(np.ptp(values) > max(1e-6 * np.abs(values).max(), 1e-9 * self.largest(units), 1e-6 * (units == "Pa")))
 
     def families(self) -> list[list[str]]:
         """Series that share a panel: of one family and one unit, as energies or temperatures do."""

@@ -1,6 +1,8 @@
 import io
+from types import SimpleNamespace
 
 import pytest
+from mpm_cli.numbers import lines
 from mpm_cli.options import overrides, seconds, workers
 from mpm_cli.progress import Bar, Plain, clock, reporter
 from mpm_cli.talk import strict
@@ -72,3 +74,11 @@ def test_a_bar_on_a_terminal_tells_failures_as_they_are(monkeypatch):
 
 def test_clock():
     assert clock(307) == "5:07" and clock(3907) == "1:05:07"
+
+
+def test_numbers_that_are_zero_are_counted_where_nothing_is_asked_for():
+    experiment = SimpleNamespace(output=SimpleNamespace(observables=[], probes={}), grid=SimpleNamespace(dimension=2))
+    record = SimpleNamespace(finals={"mass_total": 2.0, "energy_kinetic": 0.0})
+    assert [line.split()[-1] for line in lines(record, experiment)] == ["place:", "mass_total", "--all)"]
+    assert lines(record, experiment)[-1] == "  (1 of 0 with --all)"
+    assert "energy_kinetic" in "".join(lines(record, experiment, everything=True))

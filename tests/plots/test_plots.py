@@ -137,6 +137,15 @@ def test_a_single_run_gives_its_series(tree):
     assert sorted(ax.get_ylabel() for ax in panels(fig)) == ["Centre of mass along z [mm]", "Energy [J]"]
 
 
+def test_a_run_that_asks_for_nothing_shows_what_changes(tree):
+    time = np.linspace(0, 1, 11)
+    series = {"mass_total": time * 0 + 1, "pressure_mean": 1e-15 * time, "energy_kinetic": time, "energy_elastic": 1e-12 * time, "temperature_mean": time + 300}
+    fig = overview(tree({}, {"mass_total": 1.0}, series, time=time))
+    assert sorted(ax.get_ylabel() for ax in panels(fig)) == ["Kinetic energy [J]", "Mean temperature [°C]"]
+    fig = overview(tree({}, {"mass_total": 1.0}, {"mass_total": time * 0 + 1}, time=time))
+    assert [ax.get_ylabel() for ax in panels(fig)] == ["Total mass [kg]"]
+
+
 @pytest.mark.parametrize("kind", ["overview", "series", "finals"])
 def test_every_kind_is_made_of_every_shape(tree, loaf, kind):
     one = tree({"kappa": [0.1]}, {"temperature_mean": [300.0]})
