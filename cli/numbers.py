@@ -34,7 +34,7 @@ def lines(record: Any, experiment: Any, everything: bool = False) -> list[str]:
         made.append(f"{title}:")
         made += [f"  {label:<{widths[0]}}  {value:<{widths[1]}}  {name}" for label, value, name in rows]
     if left:
-        made.append(f"  ({len(left)} {'more' if first else 'of 0'} with --all)")
+        made.append(f"  ({len(left)} {'more' if first else 'more, all 0,'} with --all)")
     return made
 
 

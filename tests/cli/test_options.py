@@ -80,5 +80,5 @@ def test_numbers_that_are_zero_are_counted_where_nothing_is_asked_for():
     experiment = SimpleNamespace(output=SimpleNamespace(observables=[], probes={}), grid=SimpleNamespace(dimension=2))
     record = SimpleNamespace(finals={"mass_total": 2.0, "energy_kinetic": 0.0})
     assert [line.split()[-1] for line in lines(record, experiment)] == ["place:", "mass_total", "--all)"]
-    assert lines(record, experiment)[-1] == "  (1 of 0 with --all)"
+    assert lines(record, experiment)[-1] == "  (1 more, all 0, with --all)"
     assert "energy_kinetic" in "".join(lines(record, experiment, everything=True))
