@@ -11,7 +11,7 @@ from mpm.integrate.fracture_surface import tear_open
 from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
-from mpm.integrate.heat_step import heat_step
+from mpm.integrate.heat_step import Back, heat_step
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
@@ -59,18 +59,18 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
             return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
         clock.exchanged, clock.iterations, implicit = clock.exchanged + gained, clock.iterations + count, True
     for b, (body, walls, (lost, between)) in enumerate(zip(scene.bodies, mirrors, before, strict=True)):
-        back = scene.blend, 1.0 if between is not None and needs_slopes(scene, body) else scene.affine  # of the transfer to particles
+        back = Back(scene.blend, 1.0 if between is not None and needs_slopes(scene, body) else scene.affine)
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:
-            gained, count = heat_implicit(scene.space, body, work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, *back)
+            gained, count = heat_implicit(scene.space, body, work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, back)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, body, work.rows, walls, dt, substeps, *back)
+            gained = heat_chebyshev(scene.space, body, work.rows, walls, dt, substeps, back)
         else:
-            gained = heat_step(scene.space, body, work.rows[:EXPLICIT_ROWS], walls, dt, substeps, *back)
+            gained = heat_step(scene.space, body, work.rows[:EXPLICIT_ROWS], walls, dt, substeps, back)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)

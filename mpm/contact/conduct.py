@@ -71,12 +71,12 @@ def stage_loads(space, body, nodes, walls, box, flow, met, dt):
 
 
 @kernel
-def closed(space, body, nodes, walls, box, blend, affine):
+def closed(space, body, nodes, walls, box, back):
     """The particles' temperatures from the fields at the end, which are cleared."""
     shape, work = extents(space), np.zeros((2 + 3 * directions(space), CHUNK))
     combine(nodes[4], nodes[1], nodes[3], nodes[0], 1.0, shape, box)
     unfold(nodes[4].reshape(-1, 1), 0, shape, box, walls)
-    gather_heat(space, body.particles.x, body.thermal, nodes[1], nodes[4], blend, affine, work)
+    gather_heat(space, body.particles.x, body.thermal, nodes[1], nodes[4], back, work)
     clean(space, nodes, box)
 
 
@@ -163,7 +163,7 @@ def blocks_linked(operator):
     return operator.whole
 
 
-def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order: int, tolerance: float, blend: float, affine: float):
+def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order: int, tolerance: float, back):
     """Advance the temperatures of the bodies numbered `which` by dt; nodes (B, FIELDS, n) zero before and after, walls (B, 3, 2).
 
     Returns (heat gained through surfaces [J], heat through each link from A to B (L,) [J], iterations or -1).
@@ -209,5 +209,5 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
             nodes[b, 5, each] += moved[mine]
             settle(space, nodes[b], one[b][0])
     for b in which:
-        closed(space, bodies[b], nodes[b], walls[b], one[b][0], blend, affine)
+        closed(space, bodies[b], nodes[b], walls[b], one[b][0], back)
     return gained, passed, iterations

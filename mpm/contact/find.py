@@ -61,7 +61,7 @@ def find_walls(space, skin, stops, found, within):
                 if count < len(found.gap):
                     out = 1.0 if side == 0 else -1.0
                     looks = skin.area[s] > 2 * POINT * space.h ** (D - 1) and skin.normal[s, axis] * out < FACING
-                    put(found, count, s, 2 * axis + side, gap, stops[b, axis, side], b, skin.owner[s], skin.home[s], skin.x[s], looks)
+                    put(found, count, s, 2 * axis + side, gap, stops[b, axis, side], (b, skin.owner[s]), (skin.home[s], skin.x[s]), looks)
                     found.normal[count] = 0.0
                     found.normal[count, axis] = out
                 count += 1
@@ -96,7 +96,7 @@ def find_lone_surface(surface, space, body, b, stops, found, count):
                 if count < len(found.gap):
                     for a in range(D):
                         place[a] = x[p, a]
-                    put(found, count, -1, 2 * axis + side, gap, stops[b, axis, side], b, p, place, place, 0)
+                    put(found, count, -1, 2 * axis + side, gap, stops[b, axis, side], (b, p), (place, place), 0)
                     found.normal[count] = 0.0
                     found.normal[count, axis] = 1.0 if side == 0 else -1.0
                 count += 1
@@ -187,7 +187,7 @@ def find_pairs(space, skin, pairs, found, count, within):
             if gap >= within * h or (D > 1 and beside > wide * wide):
                 continue
             if count < len(found.gap):
-                put(found, count, s, BODY + other, gap, pairs[b, other], b, skin.owner[s], skin.home[s], skin.x[s], not corner)
+                put(found, count, s, BODY + other, gap, pairs[b, other], (b, skin.owner[s]), (skin.home[s], skin.x[s]), not corner)
                 found.normal[count], found.home[count, 1], found.point[count, 1] = normal, skin.home[t], point
                 found.body[count, 1], found.owner[count, 1], found.balanced[count, 1] = other, skin.owner[t], not corner
             count += 1

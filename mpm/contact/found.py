@@ -45,8 +45,9 @@ def around(space, r):
 
 
 @kernel
-def put(found, i, piece, against, gap, mu, b, owner, home, point, balanced):
-    """Write side A of contact i, where there is room."""
+def put(found, i, piece, against, gap, mu, who, where, balanced):
+    """Write side A of contact i, where there is room; who: body and particle; where: the particle's place and the point that touches."""
+    (b, owner), (home, point) = who, where
     found.piece[i], found.against[i], found.gap[i], found.mu[i] = piece, against, gap, mu
     found.body[i, 0], found.body[i, 1], found.owner[i, 0], found.balanced[i, 0], found.balanced[i, 1] = b, -1, owner, balanced, 0
     found.home[i, 0], found.point[i, 0], found.given[i], found.free[i] = home, point, 0.0, -1

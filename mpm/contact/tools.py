@@ -189,7 +189,7 @@ def find_tools_tools(tools, space, bodies, skin, found, count, within):
             if gap >= within * space.h:
                 continue
             if count < len(found.gap):
-                put(found, count, s, first + t, gap, tools.mu[t], skin.body[s], skin.owner[s], skin.home[s], x, faces(space, skin, s, n, 1.0))
+                put(found, count, s, first + t, gap, tools.mu[t], (skin.body[s], skin.owner[s]), (skin.home[s], x), faces(space, skin, s, n, 1.0))
                 meets_tool(tools, t, found, count, x, n)
             count += 1
         b = 0
@@ -236,7 +236,7 @@ def lone_before_tool_surface(surface, space, body, b, tools, t, against, found, 
         if gap >= 0.1 * space.h:
             continue
         if count < len(found.gap):
-            put(found, count, -1, against, gap, tools.mu[t], b, p, x, x, 0)
+            put(found, count, -1, against, gap, tools.mu[t], (b, p), (x, x), 0)
             meets_tool(tools, t, found, count, x, n)
         count += 1
     return count

@@ -59,7 +59,7 @@ def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, we
                 low[a], high[a] = min(low[a], contacts.home[i, k, a]), max(high[a], contacts.home[i, k, a])
     short = np.zeros((marked, D + D * D))  # r, and T
     if marked > 0:
-        fall_short(space, gradient, body.particles, b, walls, skin, low, high, number, spots, short)
+        fall_short(space, gradient, body.particles, b, walls, skin, (low, high), number, spots, short)
     system, W = np.empty((D + 1, D + 2)), np.empty(M)
     for i in range(count):
         for k in range(2):
@@ -92,9 +92,10 @@ def plain(spots, home, point, W):
 
 
 @kernel
-def fall_short(space, gradient, particles, b, walls, skin, low, high, number, spots, short):
-    """r and T of the marked nodes, from the particles and pieces of body b between `low` and `high`."""
+def fall_short(space, gradient, particles, b, walls, skin, box, number, spots, short):
+    """r and T of the marked nodes, from the particles and pieces of body b within `box` (low, high)."""
     at, w, G, _, sign = spots[0], spots[1], spots[2], spots[3], spots[4]
+    low, high = box
     D, M, far, home, W = directions(space), len(at), seen(space) * space.h, np.empty(directions(space)), np.empty(len(at))
     for p in range(particles.x.shape[0]):
         inside = True

@@ -103,10 +103,10 @@ def newton(space, x, alpha, flux, on, taken, total, dt, tolerance, scratch):
     return -1
 
 
-def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, back):
     x, capacity, theta, diagonal, stage, rate = body.particles.x, nodes[0], nodes[1], nodes[2], nodes[4], nodes[5]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    on = opened(space, body, thermal, capacity, theta, diagonal, walls, blend, work)
+    on = opened(space, body, thermal, capacity, theta, diagonal, walls, back.blend, work)
     total, taken, scratch, ok = np.zeros(len(on.each)), guess(on), Scratch(diagonal, stage, rate, work), on.ok
     flow = conductances(space, body, thermal, theta, work)
     pieces = place(body.surface, space, body)
@@ -126,7 +126,7 @@ def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, ord
         iterations += count
         gained += load(space, x, flow, pieces, met, stage, rate, dt * (gamma if last else 1.0 - gamma), 1.0, work)
         collect(rate, on, total)
-    ok = ok and closed(space, body, thermal, on, total, taken, stage, affine, work)
+    ok = ok and closed(space, body, thermal, on, total, taken, stage, back.affine, work)
     wiped(on, nodes)
     return (gained, iterations) if ok else (0.0, -1)
 
@@ -148,10 +148,10 @@ def look_up(alpha, on, heat, taken, stage):
     show(on, taken, stage)
 
 
-def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, substeps, back):
     capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    on = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
+    on = opened(space, body, thermal, capacity, theta, stage, walls, back.blend, work)
     heat, taken = np.zeros(len(on.each)), guess(on)
     gained, pieces = 0.0, place(body.surface, space, body)
     for k in range(substeps):
@@ -159,16 +159,16 @@ def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, sub
         conduct(space, body, thermal, stage, rate, dt / substeps, work)
         gained += exchange(body, space, pieces, thermal, stage, rate, dt / substeps, (k + 0.5) / substeps, work)
         collect(rate, on, heat)
-    if not closed(space, body, thermal, on, heat, taken, stage, affine, work):
+    if not closed(space, body, thermal, on, heat, taken, stage, back.affine, work):
         thermal.theta[:] = np.nan
     wiped(on, nodes)
     return gained
 
 
-def stabilised_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
+def stabilised_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, count, back):
     capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
-    on = opened(space, body, thermal, capacity, theta, stage, walls, blend, work)
+    on = opened(space, body, thermal, capacity, theta, stage, walls, back.blend, work)
     K = len(on.each)
     taken, first = guess(on), np.zeros(K)
     pieces = place(body.surface, space, body)
@@ -188,7 +188,7 @@ def stabilised_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, c
         before, last = last, mu * last + nu * before + step * flown - lag * first
         q_before, q_last = q_last, mu * q_last + nu * q_before + step * gain - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
-    if not closed(space, body, thermal, on, last, taken, stage, affine, work):
+    if not closed(space, body, thermal, on, last, taken, stage, back.affine, work):
         thermal.theta[:] = np.nan
     wiped(on, nodes)
     return q_last

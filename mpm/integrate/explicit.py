@@ -43,7 +43,7 @@ def advance(method, bodies, buffers, walls, gravity, dt, kick, steps, begun, rep
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, dt, kick if step == 0 else dt, reports)
+            on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, (dt, kick if step == 0 else dt), reports)
         moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
         if not pass_all(method, bodies, chunk, buffers, moment, reports):
             return
@@ -65,8 +65,9 @@ def clean(method, buffers, now):
 
 
 @kernel
-def on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, dt, kick, reports):
-    """What is done to the nodes of buffer `now` between scatter and gather; `kick` is the time that the impulse acts."""
+def on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, times, reports):
+    """What is done to the nodes of buffer `now` between scatter and gather; times: dt, and for how long the impulse acts."""
+    dt, kick = times
     space, gradient, nodes, box = method.space, method.gradient, buffers.nodes[now], buffers.boxes[now]
     if not sparse:
         mark_box(buffers.blocks[now], directions(space), extents(space), box)
@@ -97,7 +98,7 @@ def pass_body(method, body, chunk, buffers, moment, report):
     reach, shake = reaches(space, 0 if last else x.shape[0]), dither(space, x, moment.begun + moment.step)
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        if not step_chunk(method, body, chunk, here, push, moment, first, count, shake, report):
+        if not step_chunk(method, body, chunk, (here, push), moment, first, count, shake, report):
             return False
         if not last:
             spread(method.scheme, space, method.gradient, x, first, chunk, count, there, pushed, reach[first // CHUNK])
@@ -106,8 +107,8 @@ def pass_body(method, body, chunk, buffers, moment, report):
 
 
 @kernel(inline=True)
-def step_chunk(method, body, chunk, here, push, moment, first, count, shake, report):
-    """`count` particles from `first` on, from gather to what is to be scattered; the opening only reads them. False where one fails."""
+def step_chunk(method, body, chunk, source, moment, first, count, shake, report):
+    """`count` particles from `first` on, from gather to what is to be scattered; source: nodes and forces. The opening only reads. False where one fails."""
     space, gradient, x, opening, dt = method.space, method.gradient, body.particles.x, moment.opening, moment.dt
     past = 0.0 if opening else dt
     if opening and not sound(space, body, first, count):
@@ -117,7 +118,7 @@ def step_chunk(method, body, chunk, here, push, moment, first, count, shake, rep
     if opening:
         fetch(body.particles, first, chunk, count)
     else:
-        collect(method.scheme, space, gradient, x, first, chunk, count, here, push)
+        collect(method.scheme, space, gradient, x, first, chunk, count, source[0], source[1])
         carry(method.scheme, body.particles, first, chunk, count, moment.last)
         relax(body.locking, space, x, first, chunk, count, dt)
         move(space, x, chunk, first, count, dt, shake, report)

@@ -37,29 +37,29 @@ def stages(dt: float, stable: float) -> int:
 
 
 @kernel
-def heat_chebyshev(space, body, nodes, walls, dt, count, blend, affine):
+def heat_chebyshev(space, body, nodes, walls, dt, count, back):
     """Advance one body's temperatures by dt in `count` >= 2 stages; nodes: (ROWS, n) scratch, zero before and after. Returns the heat gained [J]."""
-    return advance_stabilised(body.thermal, space, body, nodes, walls, dt, count, blend, affine)
+    return advance_stabilised(body.thermal, space, body, nodes, walls, dt, count, back)
 
 
 @role
-def advance_stabilised(thermal, space, body, nodes, walls, dt, count, blend, affine):
+def advance_stabilised(thermal, space, body, nodes, walls, dt, count, back):
     """See heat_chebyshev."""
     raise TypeError(f"no heat for {type(thermal).__name__}")
 
 
 @advance_stabilised.register(Isothermal)
-def advance_stabilised_isothermal(thermal, space, body, nodes, walls, dt, count, blend, affine):
+def advance_stabilised_isothermal(thermal, space, body, nodes, walls, dt, count, back):
     return 0.0
 
 
 @advance_stabilised.register(Thermal)
-def advance_stabilised_thermal(thermal, space, body, nodes, walls, dt, count, blend, affine):
-    return stabilised_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, count, blend, affine)
+def advance_stabilised_thermal(thermal, space, body, nodes, walls, dt, count, back):
+    return stabilised_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, count, back)
 
 
 @role
-def stabilised_by_law(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
+def stabilised_by_law(alpha, thermal, space, body, nodes, walls, dt, count, back):
     """heat_chebyshev of a body with heat, by the law of its specific heat: enthalpy_steps.py where it follows temperature."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
@@ -90,7 +90,7 @@ def recurrence(count):
 
 
 @stabilised_by_law.register(Constant)
-def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, count, blend, affine):
+def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, count, back):
     shape, x = extents(space), body.particles.x
     box = reach(space, x)
     capacity, start, rate, first, before, last, theta = nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6]
@@ -120,7 +120,7 @@ def stabilised_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, co
         q_before, q_last = q_last, mu * q_last + nu * q_before + step * taken - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
     unfold(last.reshape(-1, 1), 0, shape, box, walls)
-    gather_heat(space, x, thermal, start, last, blend, affine, work)
+    gather_heat(space, x, thermal, start, last, back, work)
     for field in range(ROWS):
         used = box.copy()
         clear(nodes[field].reshape(-1, 1), shape, used)

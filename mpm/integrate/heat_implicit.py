@@ -28,35 +28,35 @@ GAMMA = 1.0 - 0.5**0.5
 
 
 @kernel
-def heat_implicit(space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def heat_implicit(space, body, nodes, walls, dt, order, tolerance, back):
     """Advance one body's temperatures by dt; nodes: (6 or more, n) scratch, zero before and after. Returns (heat gained [J], iterations or -1)."""
-    return advance_implicit(body.thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
+    return advance_implicit(body.thermal, space, body, nodes, walls, dt, order, tolerance, back)
 
 
 @role
-def advance_implicit(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def advance_implicit(thermal, space, body, nodes, walls, dt, order, tolerance, back):
     """See heat_implicit."""
     raise TypeError(f"no heat for {type(thermal).__name__}")
 
 
 @advance_implicit.register(Isothermal)
-def advance_implicit_isothermal(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def advance_implicit_isothermal(thermal, space, body, nodes, walls, dt, order, tolerance, back):
     return 0.0, 0
 
 
 @advance_implicit.register(Thermal)
-def advance_implicit_thermal(thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
-    return implicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine)
+def advance_implicit_thermal(thermal, space, body, nodes, walls, dt, order, tolerance, back):
+    return implicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, order, tolerance, back)
 
 
 @role
-def implicit_by_law(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def implicit_by_law(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, back):
     """heat_implicit of a body with heat, by the law of its specific heat: one linear solution a stage where it is constant, enthalpy_steps.py elsewhere."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 
 @implicit_by_law.register(Constant)
-def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, blend, affine):
+def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, order, tolerance, back):
     shape = extents(space)
     x = body.particles.x
     box = reach(space, x)
@@ -95,7 +95,7 @@ def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, orde
     if ok:
         combine(stage, theta, total, capacity, 1.0, shape, box)
         unfold(stage.reshape(-1, 1), 0, shape, box, walls)
-        gather_heat(space, x, thermal, theta, stage, blend, affine, work)
+        gather_heat(space, x, thermal, theta, stage, back, work)
     for field in range(nodes.shape[0]):
         used = box.copy()
         clear(nodes[field].reshape(-1, 1), shape, used)

@@ -10,6 +10,8 @@ Good values: APIC with steps of 0.1 to 0.2 R0 alpha h^2/(kappa J).   Fails when:
 is over the limit of integrate/timestep.py.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mpm.basis import stencil
@@ -25,36 +27,43 @@ from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 ROWS = 4  # scratch fields
 
 
+class Back(NamedTuple):
+    """What of the nodes goes back to the particles: the share of PIC in the value, and the share of the gathered slope that is kept (1, 1: APIC)."""
+
+    blend: float
+    affine: float
+
+
 @kernel
-def heat_step(space, body, nodes, walls, dt, substeps, blend, affine):
+def heat_step(space, body, nodes, walls, dt, substeps, back):
     """Advance one body's temperatures by dt in `substeps` grid steps; nodes: (ROWS, n) scratch, zero before and after. Returns the heat gained [J]."""
-    return advance_heat(body.thermal, space, body, nodes, walls, dt, substeps, blend, affine)
+    return advance_heat(body.thermal, space, body, nodes, walls, dt, substeps, back)
 
 
 @role
-def advance_heat(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def advance_heat(thermal, space, body, nodes, walls, dt, substeps, back):
     """See heat_step."""
     raise TypeError(f"no heat for {type(thermal).__name__}")
 
 
 @advance_heat.register(Isothermal)
-def advance_heat_isothermal(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def advance_heat_isothermal(thermal, space, body, nodes, walls, dt, substeps, back):
     return 0.0
 
 
 @advance_heat.register(Thermal)
-def advance_heat_thermal(thermal, space, body, nodes, walls, dt, substeps, blend, affine):
-    return explicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine)
+def advance_heat_thermal(thermal, space, body, nodes, walls, dt, substeps, back):
+    return explicit_by_law(thermal.alpha, thermal, space, body, nodes, walls, dt, substeps, back)
 
 
 @role
-def explicit_by_law(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def explicit_by_law(alpha, thermal, space, body, nodes, walls, dt, substeps, back):
     """heat_step of a body with heat, by the law of its specific heat: enthalpy_steps.py where it follows temperature."""
     raise TypeError(f"{type(alpha).__name__} is no law of temperature")
 
 
 @explicit_by_law.register(Constant)
-def explicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, substeps, blend, affine):
+def explicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, substeps, back):
     shape = extents(space)
     x, m = body.particles.x, body.particles.m
     box = reach(space, x)
@@ -75,7 +84,7 @@ def explicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, subs
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
         over_nodes(rate, capacity, theta, shape, box, False)
         unfold(theta.reshape(-1, 1), 0, shape, box, walls)
-    gather_heat(space, x, thermal, start, theta, blend, affine, work)
+    gather_heat(space, x, thermal, start, theta, back, work)
     for field in range(4):
         used = box.copy()
         clear(nodes[field].reshape(-1, 1), shape, used)
@@ -153,7 +162,7 @@ def conduct(space, body, thermal, theta, rate, dt, work):
 
 
 @kernel
-def gather_heat(space, x, thermal, start, end, blend, affine, work):
+def gather_heat(space, x, thermal, start, end, back, work):
     """Particle temperatures and gradients from the nodes before and after."""
     D = directions(space)
     before, after, slope, grad = work[0], work[1], work[2 : 2 + D], work[2 + D : 2 + 2 * D]
@@ -163,10 +172,10 @@ def gather_heat(space, x, thermal, start, end, blend, affine, work):
         gather_scalar(space, x, first, count, end, after, slope, grad)
         for p in range(count):
             old = thermal.theta[first + p]
-            after[p] = after[p] - before[p] + blend * (before[p] - old)
+            after[p] = after[p] - before[p] + back.blend * (before[p] - old)
             before[p] = thermal.zero + old
         warm_up(thermal.alpha, before, after, count)
         for p in range(count):
             thermal.theta[first + p] += after[p]
             for k in range(D):
-                thermal.c[first + p, k] = affine * slope[k, p]
+                thermal.c[first + p, k] = back.affine * slope[k, p]

@@ -101,9 +101,9 @@ def within(space, chunk, axis, count, low, high):
 
 
 @kernel
-def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, dt, kick, reports):
+def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, times, reports):
     """What is done to the nodes between scatter and gather."""
-    on_nodes(method, bodies, scratch(method, bodies, buffers.nodes), buffers, now, sparse, walls, gravity, dt, kick, reports)
+    on_nodes(method, bodies, scratch(method, bodies, buffers.nodes), buffers, now, sparse, walls, gravity, times, reports)
 
 
 def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bool:

@@ -36,11 +36,11 @@ def slowness(K, eta, dt):
 
 
 @kernel(inline=True)
-def strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal):
+def strains(p, q, dp, dq, q_trial, deviator, K, mu, thermal):
     """Strains of mapped invariants, and the work p dp/K + q dq/(3 mu) that the map dissipates [J/m3]: exact, as dp and dq are."""
     share = q / q_trial if q_trial > 0.0 else 0.0
     mean = (thermal - p) / (3.0 * K)
-    return mean + share * d1, mean + share * d2, mean + share * d3, p * dp / K + q * dq / (3.0 * mu)
+    return mean + share * deviator[0], mean + share * deviator[1], mean + share * deviator[2], p * dp / K + q * dq / (3.0 * mu)
 
 
 @kernel(inline=True)

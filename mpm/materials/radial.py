@@ -78,7 +78,7 @@ def strain_radial(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
     p, q, dp, dq, steps = map_radial(p_trial, q_trial, K, mu, M, p0, eta, dt)
     if steps == 0:
         return e1, e2, e3, 0.0, True
-    n1, n2, n3, work = strains(p, q, dp, dq, q_trial, d1, d2, d3, K, mu, thermal)
+    n1, n2, n3, work = strains(p, q, dp, dq, q_trial, (d1, d2, d3), K, mu, thermal)
     if steps == MOST or not math.isfinite(float(work / M)):
         return e1, e2, e3, 0.0, False
     return n1, n2, n3, work, True

@@ -63,7 +63,7 @@ def advance(matter, program, progress, out, rows):
         last = min(program.first[i + 1] - program.first[i] - 1, progress.row[i] + rows)
         while progress.row[i] < last and progress.code[i] == COMPLETED:
             row = program.first[i] + progress.row[i] + 1
-            interval(one, program, progress, i, program.times[row - 1], program.times[row], work, d, rates)
+            interval(one, program, progress, i, program.times[row - 1], program.times[row], (work, d, rates))
             if progress.code[i] == COMPLETED:
                 progress.row[i] += 1
                 record(one, progress, i, out[row])
@@ -79,7 +79,7 @@ def enter(one, progress, i, stage, now):
 
 
 @kernel
-def interval(one, program, progress, i, start, end, work, d, rates):
+def interval(one, program, progress, i, start, end, scratch):
     """From one output time to the next, cut at the ends of stages."""
     now = start
     while now < end:
@@ -90,15 +90,16 @@ def interval(one, program, progress, i, start, end, work, d, rates):
             enter(one, progress, i, stage, now)
             until = program.until[i, stage]
         until = end if until >= end * (1.0 - 1e-12) else until
-        piece(one, program, progress, i, stage, now, until, end - start, work, d, rates)
+        piece(one, program, progress, i, stage, now, until, end - start, scratch)
         if progress.code[i] != COMPLETED:
             return
         now = until
 
 
 @kernel
-def piece(one, program, progress, i, stage, start, end, span, work, d, rates):
+def piece(one, program, progress, i, stage, start, end, span, scratch):
     """Equal steps from `start` to `end` within one stage; `span` is the output interval."""
+    work, d, rates = scratch
     kind, value, entered = program.kind[i, stage], program.value[i, stage], progress.entered[i]
     goal = program.temperature[i, stage]
     held = not math.isnan(goal)

@@ -57,11 +57,12 @@ def settle(problem, gained, taken, s):
 
 
 @kernel
-def chebyshev(problem, first, final, changes, h, f0, q0, dt, s, new, f1):
+def chebyshev(problem, ends, changes, h, f0, q0, dt, s, new, f1):
     """One step of s >= 2 stages: `new` enthalpies, rate f1 there, (heat taken in the step, its rate at the end, squared error norm).
 
-    h, f0 (N,) and q0 [W] are the state, its rate and the heat taken a second at the start; first, final: Around at both ends, equal unless it `changes`.
+    h, f0 (N,) and q0 [W] are the state, its rate and the heat taken a second at the start; ends: Around at both, equal unless it `changes`.
     """
+    first, final = ends
     n = len(h)
     w0 = 1.0 + DAMPING / s**2
     t1 = w0 * w0 - 1.0
@@ -143,7 +144,7 @@ class ChebyshevSteps(Enthalpy):
             return np.inf
         new, f1 = np.empty_like(self.state), np.empty_like(self.state)
         first, changes = self.around(self.now), self.system.programmes.changes
-        q, q1, error = chebyshev(self.problem, first, self.around(self.now + dt), changes, self.state, self.rate, self.taken, dt, s, new, f1)
+        q, q1, error = chebyshev(self.problem, (first, self.around(self.now + dt)), changes, self.state, self.rate, self.taken, dt, s, new, f1)
         self.evaluations += s
         self.trial = dt, new, f1, q, q1
         return float(np.sqrt(error)) / self.allowed

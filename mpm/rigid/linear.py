@@ -38,11 +38,12 @@ class Problem(NamedTuple):
 
 
 @kernel
-def stages(problem, solver, a, error, filters, slack, dt, u, supply, received, k, flux):
+def stages(problem, solver, tableau, filters, slack, dt, u, around, k, flux):
     """Stage slopes k (m, N), guessed from those of the last step, and the exchange rate of each stage, by a solver of M + gamma dt A.
 
     What the sum of a slope misses of it is spread over the body, up to `slack` of the heat that moves (below 0: never).
     Returns the square of the mass norm of the error, filtered so many times."""
+    (a, error), (supply, received) = tableau, around
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
     for i in range(m):
@@ -147,8 +148,8 @@ class LinearSteps:
             if self.size is None:
                 return np.inf
         k, flux = self.slopes.copy(), np.empty(len(tableau.a))
-        supply, received = self.surroundings(dt)
-        square = stages(self.problem, self.solver, tableau.a, tableau.error, self.filters, self.closes, dt, self.state, supply, received, k, flux)
+        way = tableau.a, tableau.error
+        square = stages(self.problem, self.solver, way, self.filters, self.closes, dt, self.state, self.surroundings(dt), k, flux)
         if isinstance(self.solver, Gradients) and self.solver.count[0] < 0:
             self.solver.count[0] = 0
             return np.inf
