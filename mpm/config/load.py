@@ -215,7 +215,8 @@ def validate(root: Node, orphan: bool = False) -> tuple[Experiment | None, list[
     found: list[Finding] = []
     experiment: Any = None
     try:
-        experiment = whole = Experiment.model_validate(raw)
+        whole: Any = Experiment.model_validate(raw)
+        experiment = whole
     except ValidationError as error:
         found += findings(error, ROOT)
         whole = loose(ROOT, raw)

@@ -1,6 +1,6 @@
 """Rules of `method.frame: total`: what it does not do yet, or does in its own way, is told where it stands."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from mpm.config.explain import Finding
@@ -11,7 +11,7 @@ OWN = "leave it out: velocities and temperatures stay on the nodes; or method.fr
 UPDATED = "method.frame: updated"
 
 
-def known(question, *given) -> bool:
+def known(question: Callable[..., Any], *given: Any) -> bool:
     """The answer, and no where it is not known."""
     try:
         return bool(question(*given))

@@ -14,6 +14,7 @@ add at most in that precision, measured here, `fma_share` the one over the other
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def lattice(options: Options) -> tuple[np.ndarray, float]:
     return x, spacing**dim
 
 
-def cube(options: Options):
+def cube(options: Options) -> Any:
     """The scene, ready to run, in coordinates from the walls."""
     from mpm.boundary import STOP
     from mpm.materials import NeoHookean, NoFlow
@@ -98,7 +99,7 @@ def bench(options: Options) -> dict:
     clock, work = Clock(scene), work_arrays(scene)
     dt = 0.2 * h / np.sqrt((LAM + 2 * MU) / DENSITY)
 
-    def run(steps):
+    def run(steps: int) -> None:
         advance_block(scene, clock, work, dt, steps)
 
     began = time.perf_counter()
@@ -118,7 +119,7 @@ def bench(options: Options) -> dict:
     return found | {"flops": flops, "peak_gflops": round(peak, 1), "fma_share": round(flops * found["Mpps_med"] / 1e3 / peak, 3)}
 
 
-def told(options: Options, particles, blocks: np.ndarray, shift: float) -> dict:
+def told(options: Options, particles: Any, blocks: np.ndarray, shift: float) -> dict:
     """Times and the check of a finished run."""
     N, x, v = len(particles.m), particles.x.astype(float) + shift, particles.v.astype(float)
     state = sum(array.nbytes for array in particles)

@@ -11,6 +11,7 @@ Time    the smallest of the rounds' processor times of a run, set-up included, w
 """
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -148,7 +149,7 @@ def assemble(experiment: Any, plan: Any, tree: Any, timings: Timings) -> tuple[d
     return variables, [sentence(cheapest(ranked, least_time, median, tolerance), names, ranked, least_time, median, own) for tolerance in TOLERANCES]
 
 
-def least(data: np.ndarray, how) -> np.ndarray:
+def least(data: np.ndarray, how: Callable[[np.ndarray], float]) -> np.ndarray:
     """A number a setting from its rounds; NaN where it was not timed."""
     return np.array([how(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in data])
 

@@ -16,6 +16,8 @@ separable form of mpm.transfer saves: the share is work wanted over time taken, 
 
 import statistics
 import time
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +50,7 @@ def triad(a, b, c):
         a[i] = b[i] + 0.5 * c[i]
 
 
-def seconds(call) -> float:
+def seconds(call: Callable[[], object]) -> float:
     """Median time of a call, repeated until it lasts LEAST; the first call is a warm-up."""
     call()
     began = time.perf_counter()
@@ -63,19 +65,19 @@ def seconds(call) -> float:
     return statistics.median(found)
 
 
-def gflops(dtype=np.float64) -> float:
+def gflops(dtype: Any = np.float64) -> float:
     """GFLOP/s of multiply-adds of one core."""
     one = np.ones(8, dtype)
     return 320 * 50_000 / seconds(lambda: multiply_add(one, 50_000)) / 1e9
 
 
-def peaks(dtype=np.float64) -> dict[str, float]:
+def peaks(dtype: Any = np.float64) -> dict[str, float]:
     """GFLOP/s of multiply-adds and GB/s of a triad too large for the caches, of one core."""
     arrays = np.ones((3, 8_000_000))
     return {"gflops": gflops(dtype), "gbytes": 24 * arrays.shape[1] / seconds(lambda: triad(*arrays)) / 1e9}
 
 
-def operations(scene) -> int:
+def operations(scene: Any) -> int:
     """Operations of a particle and mechanical step of a scene that moves, as counted above."""
     D, slopes = scene.bodies[0].particles.x.shape[1], isinstance(scene.gradient, Bspline)
     nodes = NODES[type(scene.space.basis).__name__] ** D

@@ -67,7 +67,7 @@ def spreads(scheme, space, gradient, body, chunk, nodes, force, box, times):
 class Bench:
     """A scene that can be stepped and taken apart."""
 
-    def __init__(self, experiment, threads: int = 1):
+    def __init__(self, experiment: Any, threads: int = 1):
         self.scene = build(experiment)
         self.scene.threads = threads
         self.clock, self.work = Clock(self.scene), work_arrays(self.scene)
@@ -106,7 +106,7 @@ class Bench:
         return found
 
 
-def without(experiment, sections: tuple[str, ...]) -> Any:
+def without(experiment: Any, sections: tuple[str, ...]) -> Any:
     """The experiment less those sections of every material and what needs them, or None where that is no experiment or the same one."""
     data, missing = experiment.resolved(), False
     for material in data["materials"].values():
@@ -129,7 +129,7 @@ def without(experiment, sections: tuple[str, ...]) -> Any:
         return None
 
 
-def phases(experiment, threads: int = 1) -> dict:
+def phases(experiment: Any, threads: int = 1) -> dict:
     """Figures of one point of a config that moves; whole steps by so many threads where it is large enough, phases by one."""
     experiment = plan(experiment).cases[0].experiment
     if experiment.grid.dimension == 0 or not experiment.moving:
@@ -152,7 +152,7 @@ def phases(experiment, threads: int = 1) -> dict:
     return found
 
 
-def rigid(experiment) -> dict:
+def rigid(experiment: Any) -> dict:
     """Of a point without particles: its time, how much of it sets up, its steps, and what it takes without its surfaces."""
     runs = []
     whole = seconds(lambda: runs.append(run_point(experiment, compare=False)))

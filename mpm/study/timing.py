@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,6 +25,8 @@ from typing import Any
 from mpm.records.netcdf import write_whole
 from mpm.records.provenance import machine, now
 from mpm.sweep.report import Reporter
+
+Halted = Callable[[], bool]  # whether it was asked to stop
 
 LEAST = 0.02  # s that a timing lasts at least
 WRITE = 5.0  # s between two writes of the file
@@ -79,7 +82,7 @@ class Timings:
             self.written = time.monotonic()
 
 
-def timed(points: dict[str, Any], labels: dict[str, str], repeats: int, path: Path, reporter: Reporter, peers: dict[str, str], halted) -> Timings:
+def timed(points: dict[str, Any], labels: dict[str, str], repeats: int, path: Path, reporter: Reporter, peers: dict[str, str], halted: Halted) -> Timings:
     """Seconds of every point in `repeats` rounds; `halted()` is asked between two timings."""
     from mpm.runner import run_point, warm
 
@@ -119,14 +122,14 @@ def unfinished(one: dict, points: dict[str, Any], peers: dict[str, str]) -> bool
     return any(run_id not in one["cpu"] for run_id in points) or any(name not in one["peers"] for name in peers)
 
 
-def stop(halted, found: Timings) -> None:
+def stop(halted: Halted, found: Timings) -> None:
     """Leave, with what was timed on disk, if asked to."""
     if halted():
         found.write()
         raise Stopped
 
 
-def clock(run_point, point: Any, number: int) -> tuple[float, float]:
+def clock(run_point: Callable[..., Any], point: Any, number: int) -> tuple[float, float]:
     """(wall, processor) seconds of one run, over `number` runs."""
     wall, cpu = time.perf_counter(), time.process_time()
     for _ in range(number):
@@ -144,7 +147,7 @@ def peer(command: str) -> list[dict]:
     return rows
 
 
-def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted) -> Timings:
+def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted: Halted) -> Timings:
     """Processor seconds of import, compilation and one run, by method, in fresh processes with empty caches; methods of one `kind` share it.
 
     ABREAST processes at a time: what is kept is each one's own processor time, of which a neighbour on another core takes little.
@@ -173,7 +176,7 @@ def compiled(points: dict[str, Any], path: Path, reporter: Reporter, halted) -> 
     return found
 
 
-def cold(point: Any, halted) -> tuple[float | None, str]:
+def cold(point: Any, halted: Halted) -> tuple[float | None, str]:
     """(processor seconds of one run in a fresh process with an empty cache, ""), or (None, what went wrong); (None, "") where it was asked to stop."""
     if halted():
         return None, ""

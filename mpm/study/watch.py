@@ -20,6 +20,7 @@ import tempfile
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from mpm.study.bench import BenchError
 
@@ -117,7 +118,7 @@ def in_turn(row: str, here: Path, there: Path, rounds: int) -> dict:
     return told(row, list(zip(*([timed(place, row) for place in (here, there)] for _ in range(rounds)), strict=True)))
 
 
-def told(row: str, found) -> dict:
+def told(row: str, found: list[Any]) -> dict:
     ours, theirs = found
     for name, one in (("here", ours[0]), ("there", theirs[0])):
         if "failed" in one:

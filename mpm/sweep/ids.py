@@ -1,6 +1,7 @@
 """Ids: the run ids of a sweep by number and the other way, 24 bytes a point; as texts in a dict they would take two hundred."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Ids(Sequence):
     def __contains__(self, run_id: object) -> bool:
         return isinstance(run_id, str) and self.find(run_id) >= 0
 
-    def __getitem__(self, number):
+    def __getitem__(self, number: Any) -> str:
         return self.texts[number].decode("ascii")
 
     def __len__(self) -> int:

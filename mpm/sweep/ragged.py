@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 
-def particles(tree: Any, snapshot: float | None = None, **point: Any):
+def particles(tree: Any, snapshot: float | None = None, **point: Any) -> Any:
     """An xarray.Dataset of one snapshot: dim `particle`, numbered by `id` where the snapshot has it, tensors with named components.
 
     tree      what `mpm.run`, `mpm.sweep` or xarray.open_datatree gave

@@ -95,9 +95,9 @@ def test_all_problems_of_one_text():
     ],
 )
 def test_hostile_text_is_refused_fast_or_harmless(text):
-    start = time.perf_counter()
+    start = time.process_time()
     root, problems = nodes(text)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
     assert problems or root is None or root.plain() is not None or root.value is None
 
 
