@@ -18,8 +18,18 @@ def overview(view: View) -> Any:
         if view.design is not None:
             from mpm.plots import refined, sample
 
-            return refined.plane(view) if refined.asked(view) else sample.scatter(view)
-        return swept(view) if view.axes and view.finals else single(view)
+            return noted(refined.plane(view) if refined.asked(view) else sample.scatter(view), view)
+        return noted(swept(view) if view.axes and view.finals else families(view, None), view)
+
+
+def noted(fig: Any, view: View) -> Any:
+    """The figure with words under it: thresholds that nothing reached, warnings of a single point."""
+    told = [f"{words.title_case(words.short(view.long_name(name)))}: not reached{' by any point' if view.status.size > 1 else ''}" for name in view.unreached]
+    if view.status.size == 1 and view.warned.any():
+        told.append(view.warnings_told())
+    if told:
+        fig.supxlabel("\n".join(told), x=0.012, ha="left", color=QUIET, fontsize=9)
+    return fig
 
 
 def nothing(view: View) -> Any:
@@ -91,14 +101,6 @@ def share(axes: Any) -> None:
     limits = np.array([ax.get_ylim() for ax in axes])
     for ax in axes:
         ax.set_ylim(limits[:, 0].min(), limits[:, 1].max())
-
-
-def single(view: View) -> Any:
-    """Series of one point, a panel a family; its warnings under them."""
-    fig = families(view, None)
-    if view.warned.any():
-        fig.supxlabel(view.warnings_told(), x=0.012, ha="left", color=QUIET, fontsize=9)
-    return fig
 
 
 def all_series(view: View) -> Any:

@@ -130,6 +130,12 @@ class View:
         found = [name for name in dict.fromkeys(wanted) if name in there]
         return sorted(found, key=lambda name: name != self.wanted and name not in asked and (self.round_off(name) or self.constant(name)))
 
+    @property
+    def unreached(self) -> list[str]:
+        """Times to a threshold that no point reached, though some are ok."""
+        rows = [(str(name), row) for name, row in self.root.data_vars.items() if str(name).startswith("time_to_") and row.dims == self.dims]
+        return [name for name, row in rows if self.ok.any() and not np.isfinite(row.values).any()]
+
     def constant(self, name: str) -> bool:
         """Whether several points have the same number, to a part in a million."""
         values = self.root[name].values[np.isfinite(self.root[name].values)]

@@ -15,6 +15,7 @@ from mpm.text import visible
 NOT_RESULTS = ("wall_time", "attempts")
 NOT_ATTRIBUTES = ("config", "started", "finished", "facts", "machine", "threads", "versions", "git_revision", "source_hash", "_NCProperties")
 MOST_TOLD = 12  # paths of the config
+PLURAL = {"point": "points", "sample": "points of a sample"}
 
 
 def dataset_of(place: Path) -> Path:
@@ -66,7 +67,7 @@ def unlike(a: Any, b: Any) -> list[str]:
     names = [str(tree.attrs.get("name", "")) for tree in (a, b)]
     if names[0] == names[1] or list(sizes[0]) == list(sizes[1]):
         return []
-    about = (f"{' x '.join(f'{size} {dim}' for dim, size in one.items()) or 'one point'}" for one in sizes)
+    about = (f"{' x '.join(f'{size} {PLURAL.get(dim, dim)}' for dim, size in one.items()) or 'one point'}" for one in sizes)
     first, second = (f"{visible(name)}, {said}" for name, said in zip(names, about, strict=True))
     return ["these are results of different experiments, and nothing in them is compared", f"first   {first}", f"second  {second}"]
 

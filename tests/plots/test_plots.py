@@ -146,6 +146,17 @@ def test_a_run_that_asks_for_nothing_shows_what_changes(tree):
     assert [ax.get_ylabel() for ax in panels(fig)] == ["Total mass [kg]"]
 
 
+def test_what_no_point_reached_is_told_under_the_figure(tree):
+    time = np.linspace(0, 10, 11)
+    finals = {"temperature_mean": [300.0, 310.0], "time_to_centre_95_degC": [np.nan, np.nan]}
+    said = "Time for centre to reach 95 °C: not reached"
+    series = np.array([time, time]) + 300
+    assert f"{said} by any point" in texts(overview(tree({"kappa": [0.1, 0.2]}, finals, {"temperature_mean": series}, time=time)))
+    assert f"{said} by any point" in texts(overview(tree({"kappa": [0.1, 0.2]}, finals, {"temperature_mean": series}, time=time, sample=True)))
+    one = {"temperature_mean": 300.0, "time_to_centre_95_degC": np.nan}
+    assert said in texts(overview(tree({}, one, {"temperature_mean": time + 300}, time=time)))
+
+
 @pytest.mark.parametrize("kind", ["overview", "series", "finals"])
 def test_every_kind_is_made_of_every_shape(tree, loaf, kind):
     one = tree({"kappa": [0.1]}, {"temperature_mean": [300.0]})
