@@ -36,7 +36,8 @@ def run(
     from mpm.records.checkpoint import EVERY
     from mpm.records.variables import OK, STATUS
     from mpm.sweep.alone import run_in
-    from mpm.sweep.api import default_out, signals
+    from mpm.sweep.api import default_out
+    from mpm.sweep.folder import signals
 
     experiment = load(config, set_, smoke)
     folder: Path = out or default_out(experiment)

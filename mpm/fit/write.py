@@ -18,7 +18,7 @@ from mpm.fit.identify import band
 from mpm.fit.sentences import limits, sentences
 from mpm.records.netcdf import Array, DamagedFile, Group, to_bytes, write_whole
 from mpm.records.provenance import git_revision, machine, versions
-from mpm.sweep.api import swept_paths
+from mpm.sweep.case_list import swept_paths
 from mpm.sweep.table import Table
 
 

@@ -72,7 +72,8 @@ def chart(
 ) -> Charted:
     """Run what is missing of a chart and write OUT/chart.nc. `reporters()` makes a reporter for each of the two halves; `cold`: time compiling, too."""
     from mpm.study.timing import Stopped
-    from mpm.sweep.api import execute, planned, signals, tree_of
+    from mpm.sweep.api import execute, planned, tree_of
+    from mpm.sweep.folder import signals
 
     result = execute(experiment, out, options, reporters(), max_runs, kind="chart")
     if result.stopped:

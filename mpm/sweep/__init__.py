@@ -17,6 +17,7 @@ Further files
     apart           a short-lived interpreter beside this one, for samples and pictures
     case_list       the points of a plan and the dimensions they stand on, as plain data
     collect_apart   the interpreter that collects a folder beside a sweep
+    folder          one process in a sweep's folder: it takes the folder, reads what is there, and hears signals meanwhile
     ids             the run ids of a sweep by number and the other way, 24 bytes a point
     lock            one writer a folder, held with flock in OUT/lock
     ragged          one snapshot of particles out of the ragged rows of a dataset, as a plain table

@@ -16,7 +16,8 @@ from mpm.records.checkpoint import EVERY, Checkpoint
 from mpm.records.netcdf import DamagedFile, summary
 from mpm.records.variables import PENDING, STATUS
 from mpm.sweep import engine
-from mpm.sweep.api import sound, swept_paths, taken
+from mpm.sweep.case_list import swept_paths
+from mpm.sweep.folder import sound, taken
 from mpm.sweep.lock import Refused
 from mpm.sweep.manifest import about_one
 from mpm.sweep.queue import Points, missing, stale

@@ -3,14 +3,11 @@
 `sweep` and `run` are the Python face: the same, returning an xarray.DataTree (mpm.notebook adds what a notebook shows).
 """
 
-import contextlib
 import io
-import signal
 import sys
-import threading
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -18,8 +15,10 @@ from typing import Any
 from mpm.records.provenance import cores
 from mpm.sweep import engine
 from mpm.sweep.background_collect import Gather, NotCollected
+from mpm.sweep.case_list import skipped, swept_paths
 from mpm.sweep.engine import Engine, Options
-from mpm.sweep.lock import Lock, Refused, said_owner
+from mpm.sweep.folder import signals, sound, taken
+from mpm.sweep.lock import Refused
 from mpm.sweep.manifest import about_one
 from mpm.sweep.queue import Points, counts, exit_code, stale, warned
 from mpm.sweep.report import Reporter
@@ -27,29 +26,12 @@ from mpm.sweep.result import Result
 from mpm.sweep.store import Store
 from mpm.sweep.summaries import Summaries
 
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-
-
 TOLD = 1.0  # s of compiling that are worth a line
 
 
 def default_out(experiment: Any) -> Path:
     """`results/<config name>`."""
     return Path("results") / experiment.name
-
-
-def swept_paths(plan: Any) -> list[str]:
-    """Config paths of everything that varies."""
-    coordinates = [coordinate for dim in plan.dims for coordinate in dim.coords] + [coordinate for _, coordinate in plan.derived]
-    return [coordinate.config_path for coordinate in coordinates if coordinate.config_path]
-
-
-def skipped(plan: Any) -> int:
-    """Points that `where` dropped."""
-    total = 1
-    for dim in plan.dims:
-        total *= dim.size
-    return total - len(plan.cases)
 
 
 def planned(experiment: Any, kind: str = "sweep", max_runs: int = 10_000) -> Any:
@@ -100,28 +82,6 @@ def execute(
     return Result(store.out, lines, found, supervisor.ran, stopped, code, took, collected, hurried, told, supervisor.compiling)
 
 
-@contextlib.contextmanager
-def taken(store: Store, note: Callable[[str], None], **more: Any) -> Iterator[None]:
-    """A folder, made where it is missing, that this process alone writes in while this lasts."""
-    try:
-        store.out.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise Refused(f"{store.out} is no folder; choose another place with --out") from None
-    with Lock(store.out, **more) as lock:
-        if lock.dead is not None:
-            left = store.tidy()
-            note(f"{said_owner(lock.dead)} ended without leaving; its lock is cleared" + (f", {left} half-written files are removed" if left else ""))
-        yield
-
-
-def sound(store: Store, points: Points, note: Callable[[str], None]) -> Summaries:
-    """Summaries of the points that are there; files that are not as they were written are set aside."""
-    lines, damaged = store.lines(points.ids)
-    for name in damaged:
-        note(f"{store.set_aside(name)}: the file was damaged, or held another point, and is set aside; its point runs again")
-    return lines
-
-
 def collect_last(gather: Gather, supervisor: Engine) -> bool:
     """The dataset at the end: whether it was written. Told to leave there are two seconds at most, and the next sweep collects too."""
     heard = supervisor.signals
@@ -153,25 +113,6 @@ def run_engine(supervisor: Engine, options: Options) -> None:
         supervisor.run(Cluster(options.scheduler, options.runner, first, options.shared, out, options.jobs, memory))
         return
     supervisor.run(Processes(min(options.jobs, len(supervisor.due)), options.runner, first, supervisor.resources.limit))
-
-
-@contextlib.contextmanager
-def signals(heard: Callable[[str], None]) -> Iterator[None]:
-    """Ctrl-C, SIGTERM and SIGHUP (which is as SIGTERM, unless it is ignored, as under nohup) go to `heard` while this lasts.
-
-    Elsewhere than in the main thread nothing changes.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: handler for number in STOPS if (handler := signal.getsignal(number)) != signal.SIG_IGN}
-    for number in before:
-        signal.signal(number, lambda got, _: heard("interrupted" if got == signal.SIGINT else "terminated"))
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def folder_plan(out: Path) -> tuple[Store, Any, Points, dict, Summaries, list[str]]:

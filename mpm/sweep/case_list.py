@@ -115,3 +115,17 @@ class Cases:
 
     def __len__(self) -> int:
         return len(self.cases)
+
+
+def swept_paths(plan: Any) -> list[str]:
+    """Config paths of everything that varies."""
+    coordinates = [coordinate for dim in plan.dims for coordinate in dim.coords] + [coordinate for _, coordinate in plan.derived]
+    return [coordinate.config_path for coordinate in coordinates if coordinate.config_path]
+
+
+def skipped(plan: Any) -> int:
+    """Points that `where` dropped."""
+    total = 1
+    for dim in plan.dims:
+        total *= dim.size
+    return total - len(plan.cases)

@@ -8,7 +8,8 @@ from typing import Any
 from mpm import compiling
 from mpm.config.variation import digits, rounded
 from mpm.sweep import engine
-from mpm.sweep.api import default_out, skipped
+from mpm.sweep.api import default_out
+from mpm.sweep.case_list import skipped
 from mpm.sweep.queue import Points, missing
 from mpm.sweep.resources import Resources, size
 from mpm.sweep.store import Store

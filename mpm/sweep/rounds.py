@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from mpm.config.sweep import Sweep
-from mpm.sweep.api import signals, skipped, sound, swept_paths, taken
+from mpm.sweep.case_list import skipped, swept_paths
 from mpm.sweep.cases import plan as plan_of
 from mpm.sweep.engine import Engine, Options
+from mpm.sweep.folder import signals, sound, taken
 from mpm.sweep.manifest import claimed
 from mpm.sweep.queue import EXIT, Points, counts
 from mpm.sweep.report import Reporter

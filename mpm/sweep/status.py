@@ -9,7 +9,8 @@ import numpy as np
 
 from mpm.records.netcdf import summary
 from mpm.records.variables import STATUS
-from mpm.sweep.api import folder_plan, skipped
+from mpm.sweep.api import folder_plan
+from mpm.sweep.case_list import skipped
 from mpm.sweep.lock import owner, said_owner
 from mpm.sweep.queue import counts, stale, told, warned
 from mpm.sweep.report import label

@@ -13,9 +13,10 @@ import numpy as np
 
 from mpm.records.frames import Entries
 from mpm.records.netcdf import DamagedFile, set_aside, unseal
-from mpm.sweep.api import collect_last, folder_plan, run_engine, signals
+from mpm.sweep.api import collect_last, folder_plan, run_engine
 from mpm.sweep.background_collect import Gather
 from mpm.sweep.engine import Engine, Options
+from mpm.sweep.folder import signals
 from mpm.sweep.lock import Refused, lock_where_possible
 from mpm.sweep.queue import Due
 from mpm.sweep.report import Reporter

@@ -11,7 +11,8 @@ import fake_runner as fake
 import pytest
 from scenes import config
 
-from mpm.sweep.api import signals, tree_of
+from mpm.sweep.api import tree_of
+from mpm.sweep.folder import signals
 
 HERE = Path(__file__).parent
 PARENT = """
