@@ -58,8 +58,14 @@ class View:
     def parameters(self) -> list[Axis]:
         """What a sample varies, then the axes beside it."""
         rows = [row for name, row in self.root.coords.items() if row.dims == (self.design,) and row.dtype.kind in "fiu"]
-        rows = [row for row in rows if len(np.unique(row.values)) > 1]
+        rows = [row for row in rows if len(np.unique(row.values)) > 1 and not self.follows.intersection((str(row.name), row.attrs.get("config_path", "")))]
         return [Axis.of(row, str(self.design), self.drawn_in_logarithm(row)) for row in rows] + [axis for axis in self.axes if not axis.category]
+
+    @cached_property
+    def follows(self) -> set[str]:
+        """What formulas make of named parameters, and what a sweep derives: they move with the others."""
+        formulas = self.config.get("formulas") or {}
+        return {*((self.config.get("sweep") or {}).get("derive") or {}), *formulas, *(path.removesuffix(".value") for path in formulas)}
 
     def named(self, at: dict[str, int]) -> list[str]:
         """A point by its values: what the axes say, and of a sample what its parameters are; its number where they are words."""
@@ -125,7 +131,8 @@ class View:
         names = [str(name) for name, row in self.root.data_vars.items() if name not in BOOKKEEPING and row.dims == self.dims and row.dtype.kind in "fiu"]
         there = [name for name in names if np.isfinite(self.root[name].values).any()]
         asked = [dataset_name(name) for name in (self.config.get("output") or {}).get("overview") or []]
-        first = [*filter(None, [self.wanted]), *asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
+        refined = ((self.config.get("sweep") or {}).get("refine") or {}).get("of", "")
+        first = [*filter(None, [self.wanted, dataset_name(refined)]), *asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
         wanted = [*first, *self.listed, *self.probes, *there]
         found = [name for name in dict.fromkeys(wanted) if name in there]
         return sorted(found, key=lambda name: name != self.wanted and name not in asked and (self.round_off(name) or self.constant(name)))

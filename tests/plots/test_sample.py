@@ -103,3 +103,10 @@ def test_two_refined_axes_are_a_plane_with_the_line_that_was_followed(tree, tmp_
     assert np.log(y) + 2 * x == pytest.approx(4, abs=1e-9)
     said = [text.get_text() for found in plane.get_children() if isinstance(found, Legend) for text in found.get_texts()]
     assert said[0].endswith("°C, straight between the points") and said[1] == "not reached (1 point)" and said[2].startswith("diverged")
+
+
+@pytest.mark.parametrize("config", [{"formulas": {"surfaces.0.convection.beta": "40 * kappa"}}, {"sweep": {"derive": {"beta": "40 * kappa"}}}])
+def test_what_follows_from_another_parameter_has_no_panel_of_its_own(tree, config):
+    kappa = np.random.default_rng(5).random(20)
+    fig = overview(tree({"kappa": kappa, "beta": 40 * kappa}, {"temperature_mean": 300 + kappa}, sample=True, config=config))
+    assert [ax.get_xlabel() for ax in fig.axes] == ["κ [W/m/K]", "Spearman, 95 % bootstrap"]
