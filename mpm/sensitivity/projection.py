@@ -3,7 +3,7 @@
     y = m + sum_a b_a phi_a(x) + e      phi_a products of polynomials that are orthonormal over each parameter; b by ridge regression; e from FOLDS parts, each
                                         predicted from the others
     V     = |b|^2 + 2 E(e f) + V(e)     f: the surrogate without its mean
-    S_i V = |b_i|^2 + 2 E(e f_i) + sum_j (E(e phi_j(x_i)))^2          b_i: terms of x_i alone; the sum without bias, from pairs of points of one part
+    S_i V = |b_i|^2 + 2 E(e f_i) + V(E(e | x_i))                      b_i: terms of x_i alone; the last from pairs of points that are next along x_i
     T_i V = V - |b_o|^2 - 2 E(e f_o) - R                              b_o: terms without x_i; 0 <= R <= V(e) is not known, so both ends are taken
 
 The surrogate need not be good: E is over the data, so what it misses is found there, and a bad one gives wide intervals. Their half is Student's t times the
@@ -13,6 +13,7 @@ variance is at least the true one in the mean. At least LEAST to each side: nobo
 Basis   Legendre polynomials over the range; over at most LEVELS different values those that are orthonormal on them. Terms of up to three parameters by
         rising q-norm of their degrees; q, their number and the penalty by the leave-one-out error
 Source  Sudret, RESS 93 (2008) 964 (indices from a basis); Da Veiga and Gamboa, J. Nonparametric Stat. 25 (2013) 573 (one step from a surrogate);
+        Gamboa, Gremaud, Klein and Lagnoux, Bernoulli 28 (2022) 2345 (pairs that are next by rank);
         Chernozhukov et al., Econometrics J. 21 (2018) C1 (parts predicted from the others); Efron and Stein, Ann. Statist. 9 (1981) 586 (the jackknife)
 Good values: 20 points a parameter and more. Fails when: parameters do not vary independently, as where failed points leave a corner empty: `failing.bounded`
 """
@@ -125,21 +126,22 @@ def once(basis: Basis, y: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, np.
     for k, single in enumerate(basis.single):
         alone, without = (degrees[:, k] > 0) & ((degrees > 0).sum(axis=1) == 1), degrees[:, k] == 0
         known = terms[:, alone].sum(axis=1)
-        missed = e[:, None] * single[:, 1:]
-        spread = np.cov(missed.T).reshape(missed.shape[1], -1)
-        values[0, k] = (square[alone].sum() + 2 * np.mean(e * known) + squares(missed, part)) / variance
-        influence = (2 * e * known + 2 * missed @ missed.mean(axis=0) - values[0, k] * of_variance) / variance
-        errors[0, k] = math.sqrt(influence.var(ddof=1) / count + 2 * FOLDS * np.sum(spread**2) / (count * variance) ** 2)
+        missed = beside(e, single[:, 1])
+        values[0, k] = (square[alone].sum() + np.mean(2 * e * known + missed)) / variance
+        errors[0, k] = math.sqrt(np.var((2 * e * known + missed - values[0, k] * of_variance) / variance, ddof=1) / count)
         known = terms[:, without].sum(axis=1)
         values[1, k] = 1 - (square[without].sum() + 2 * np.mean(e * known)) / variance
         errors[1, k] = math.sqrt(np.var((2 * e * known - (1 - values[1, k]) * of_variance) / variance, ddof=1) / count)
     return values, errors, rest / variance
 
 
-def squares(values: np.ndarray, part: np.ndarray) -> float:
-    """Sum over columns of the squared expectation, without bias: from pairs of different points of one part, whose surrogate knew neither."""
-    found = 0.0
-    for k in range(FOLDS):
-        one = values[part == k]
-        found += float((one.sum(axis=0) ** 2 - (one**2).sum(axis=0)).sum()) / (len(one) - 1)
-    return found / len(values)
+def beside(e: np.ndarray, column: np.ndarray) -> np.ndarray:
+    """e of each point times e of the next one along a parameter, whose mean is the variance of E(e | x_i) whatever its shape; of points that share a value of
+    it, times the mean of the others."""
+    levels, at, count = np.unique(column, return_inverse=True, return_counts=True)
+    if len(levels) < len(column) / 2:
+        return e * (np.bincount(at, e)[at] - e) / np.maximum(count[at] - 1, 1)
+    order = np.argsort(column, kind="stable")
+    found = np.empty(len(e))
+    found[order] = e[order] * np.append(e[order][1:], e[order][-2])
+    return found
