@@ -11,6 +11,7 @@ from mpm.plots import words
 FEW = 64  # values that are told apart by their digits
 LETTERS = 105.0  # of ticks across a figure
 LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
+SHORT = 26  # letters of a heading in a legend
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ class Axis:
         values = scale(raw)
         log = log_spaced(values) and not scale.shift if log is None else bool(log and (values > 0).all())
         letter = words.symbol(name)
-        title = words.with_units(letter or words.short(attrs.get("long_name", name)), scale.units)
+        long = words.short(attrs.get("long_name", name))
+        title = words.with_units(letter or (long if len(long) <= SHORT else name.rsplit(".", 1)[-1].replace("_", " ")), scale.units)
         return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
 
     @property
@@ -73,7 +75,12 @@ class Axis:
 
     def says(self, index: int) -> str:
         """`κ = 0.35 W/m/K`."""
-        return f"{words.symbol(self.name) or self.name.rsplit('.', 1)[-1].replace('_', ' ')} = {self.text(index)} {self.units}".strip()
+        return f"{self.called} = {self.text(index)} {self.units}".strip()
+
+    @property
+    def called(self) -> str:
+        """The letter of the parameter, else its name as words."""
+        return words.symbol(self.name) or self.name.rsplit(".", 1)[-1].replace("_", " ")
 
     def apply(self, ax: Any) -> None:
         """Scale, ticks and label of the horizontal axis."""

@@ -125,7 +125,7 @@ def families(view: View, lines: Axis | None) -> Any:
     grid = fig.subplots(rows, columns, squeeze=False).ravel()
     at = dict(view.chosen)
     if lines is not None and lines.dim == view.design:
-        grid[0].set_title(f"Some points of the sample, by {words.symbol(lines.name) or lines.name}; all parameters differ")
+        grid[0].set_title(f"Some points of the sample, by {lines.called}; all parameters differ")
     elif lines is not None:
         grid[0].set_title(", ".join(axis.says(at[axis.dim]) for axis in view.axes if axis is not lines))
     for ax, names in zip(grid, groups, strict=False):

@@ -67,7 +67,7 @@ def against(ax: Any, view: View, curves: list[str], axis: Axis) -> None:
     """Some points of the sample over time beside what was measured, the nearest to it among them."""
     at = dict(view.chosen)
     series.panel(ax, view, curves, axis if axis.dim == view.design else None, at)
-    ax.set_title(f"Some points of the sample, by {words.symbol(axis.name) or axis.name}; all parameters differ")
+    ax.set_title(f"Some points of the sample, by {axis.called}; all parameters differ")
     if told := series.agreement(view, curves, at):
         series.note(ax, f"{axis.says(at[axis.dim])}, {told}")
 
@@ -105,7 +105,7 @@ def dress(ax: Any, view: View, axis: Axis, name: str, scale: words.Scale, values
     if first:
         ax.set_ylabel(words.wrapped(view.label(name, scale.units), 24), fontsize=9)
     if last:
-        ax.set_xlabel(words.with_units(words.symbol(axis.name) or axis.name.rsplit(".", 1)[-1], axis.units))
+        ax.set_xlabel(words.with_units(axis.called, axis.units))
     else:
         ax.tick_params(labelbottom=False)
     ax.tick_params(labelsize=8.5)
@@ -145,7 +145,7 @@ def bars(ax: Any, view: View, parameters: list[Axis], blocks: list[np.ndarray], 
     rows = np.arange(len(parameters))[::-1]
     ax.set_xlim(-1, 1)
     ax.set_ylim(-0.6, len(parameters) - 0.4)
-    ax.set_yticks(rows, [words.symbol(axis.name) or axis.name.rsplit(".", 1)[-1] for axis in parameters])
+    ax.set_yticks(rows, [axis.called for axis in parameters])
     ax.axvline(0, color=QUIET, lw=0.8)
     ax.grid(axis="y", visible=False)
     ax.tick_params(labelsize=8.5, labelbottom=last)
