@@ -23,18 +23,11 @@ class Model(BaseModel):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict:
-        return cls.exemplified(handler(schema), handler)
+        return cls.written(handler(schema), handler)
 
     @classmethod
-    def exemplified(cls, made: dict, handler: Any) -> dict:
-        """A JSON schema of the class in which every key has an example."""
-        from mpm.config.examples import example
-        from mpm.config.schema_paths import Slot
-
-        bases = tuple(base.__name__ for base in cls.__mro__)
-        for name, part in handler.resolve_ref_schema(made).get("properties", {}).items():
-            if slot := Slot(cls).step(name):
-                part["examples"] = [example(cls.__name__, name, slot, bases)]
+    def written(cls, made: dict, handler: Any) -> dict:
+        """The JSON schema of what a config holds, from that of the fields: the same, but for classes that are written in another way."""
         return made
 
 
@@ -87,7 +80,7 @@ class Menu:
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict:
         choices = []
         for name, kind in self.kinds.items():
-            inner = kind.exemplified(handler(kind.__pydantic_core_schema__), handler)
+            inner = kind.written(handler(kind.__pydantic_core_schema__), handler)
             if "$ref" in inner:  # a kind within a kind: named once, described wherever it stands
                 inner = {**inner, "description": handler.resolve_ref_schema(inner).get("description", self.what)}
             choices.append({"type": "object", "properties": {name: inner}, "required": [name], "additionalProperties": False})

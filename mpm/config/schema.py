@@ -3,13 +3,24 @@
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import core_schema
 
 from mpm.config.base import Kind, Model
+from mpm.config.examples import example
 from mpm.config.experiment import Experiment, plain
+from mpm.config.schema_paths import Slot
 
 
 class Plain(GenerateJsonSchema):
-    """Defaults as a config would write them."""
+    """Defaults as a config would write them, and an example of every key."""
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> dict[str, Any]:
+        made, kind = super().model_schema(schema), schema["cls"]
+        bases = tuple(base.__name__ for base in kind.__mro__)
+        for name, part in made.get("properties", {}).items():
+            if slot := Slot(kind).step(name):
+                part["examples"] = [example(kind.__name__, name, slot, bases)]
+        return made
 
     def encode_default(self, dft: Any) -> Any:
         if isinstance(dft, Kind) and dft.bare() and not plain(dft, defaults=False)[dft.kind]:

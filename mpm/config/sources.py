@@ -22,9 +22,9 @@ class ByFormula(Kind):
     text: str = doc(description="over x, y, z (r, z where round) of the material at the start [m], time t [s] and temperature T [K]")
 
     @classmethod
-    def exemplified(cls, made: dict, handler: Any) -> dict:
+    def written(cls, made: dict, handler: Any) -> dict:
         """The text alone, right below the kind's name."""
-        text = handler.resolve_ref_schema(super().exemplified(made, handler))["properties"]["text"]
+        text = handler.resolve_ref_schema(super().written(made, handler))["properties"]["text"]
         return {**text, "description": cls.__doc__}
 
     @model_validator(mode="before")
