@@ -68,6 +68,7 @@ def bench(
 
 
 def in_turn(revision: str, rounds: int, only: str, as_json: bool) -> None:
+    """Another revision of the checkout timed beside this one, in turn; exit code 2 where it cannot be."""
     from mpm.study.bench import BenchError
     from mpm.study.watch import HEAD, line
     from mpm.study.watch import compare as compared

@@ -42,26 +42,31 @@ class Plain(Reporter):
         self.compiled = ""  # what was last said to be compiled
 
     def write(self, text: str) -> None:
+        """A line, written at once."""
         self.stream.write(shown(text) + "\n")
         self.stream.flush()
 
     def start(self, total: int, done: int, jobs: int) -> None:
+        """How many points there are, and how many are done already."""
         self.total, self.done = total, done
         if not self.failures_only:
             self.write(f"{total} point{'s' * (total != 1)}, {done} already there")
 
     def finished(self, label: str, line: dict, again: bool) -> None:
+        """A line a point, or a failed point."""
         self.done += not again
         if not self.failures_only or line["status"] != 0:
             self.write((f"[{self.done}/{self.total}] " if self.total else "") + told(label, line, again))
 
     def compiling(self, text: str, expected: float) -> None:
+        """Said once of each kernel that takes long; `expected` in seconds."""
         what = text.partition(":")[0]
         if what and what != self.compiled and expected > LONG and not self.failures_only:
             self.write(f"{what}, once on this machine: about {expected:.0f} s")
         self.compiled = what or self.compiled
 
     def note(self, text: str) -> None:
+        """A line."""
         self.write(text)
 
 
@@ -79,12 +84,14 @@ class Bar(Reporter):
         self.began = time.monotonic()
 
     def start(self, total: int, done: int, jobs: int) -> None:
+        """Show the bar."""
         self.total, self.done = total, done
         self.task = self.progress.add_task("starting workers", total=total, completed=done, left="")
         self.progress.start()
         self.began = time.monotonic()
 
     def beat(self, running: dict[str, float]) -> None:
+        """The bar moves with the fractions of the points that run, and tells how long the rest takes."""
         parts = self.ran + sum(running.values())
         elapsed = time.monotonic() - self.began
         left = f"{clock(elapsed / parts * (self.total - self.done - sum(running.values())))} left" if parts > 0.01 else ""
@@ -93,6 +100,7 @@ class Bar(Reporter):
         self.progress.update(self.task, completed=self.done + sum(running.values()), description=said, left=left)
 
     def finished(self, label: str, line: dict, again: bool) -> None:
+        """One more point; a failed one is told above the bar."""
         self.done += not again
         self.ran += not again
         if line["status"] != 0:
@@ -101,10 +109,12 @@ class Bar(Reporter):
         self.progress.update(self.task, completed=self.done)
 
     def compiling(self, text: str, expected: float) -> None:
+        """What is compiled, in the bar's own text."""
         if text:
             self.progress.update(self.task, description=text)
 
     def note(self, text: str) -> None:
+        """A line above the bar."""
         self.say(text)
 
     def say(self, text: str) -> None:
@@ -112,6 +122,7 @@ class Bar(Reporter):
         self.console.print(shown(text), markup=False, emoji=False)
 
     def close(self) -> None:
+        """The bar stands still."""
         self.progress.stop()
 
 
@@ -145,6 +156,7 @@ class Single:
         self.end: threading.Timer | None = None
 
     def signal(self, kind: str) -> None:
+        """The first stops the run at its next beat, or ends the process after LEAVE seconds; the second is a KeyboardInterrupt at once."""
         if self.stopped:
             raise KeyboardInterrupt
         self.stopped = kind
@@ -159,6 +171,7 @@ class Single:
         end({"interrupted": 130, "terminated": 143}[self.stopped])
 
     def note(self, text: str) -> None:
+        """Passed on."""
         self.reporter.note(text)
 
     def close(self) -> None:
@@ -168,10 +181,12 @@ class Single:
         self.reporter.close()
 
     def beat(self, fraction: float, when: float) -> bool:
+        """Passed on; true where the run is to stop."""
         self.reporter.beat({"": fraction})
         return bool(self.stopped)
 
     def compiling(self, text: str, expected: float, took: float) -> None:
+        """Passed on; `expected` and `took` in seconds."""
         self.reporter.compiling(text, expected)
 
     def finished(self, name: str, record: Any, compiled: float) -> None:

@@ -54,6 +54,7 @@ def unread(path: Path, slot: Slot) -> bool:
 
 
 def once(experiment: Any) -> Iterator[tuple]:
+    """For a rule of the whole experiment: one call."""
     yield ()
 
 

@@ -86,6 +86,7 @@ class Builder:
         self.count = 0
 
     def report(self, line: int, column: int, message: str, **more: str) -> None:
+        """Tell a problem at a line and column, with the path of where we are."""
         path = ".".join(str(key) for key in self.path()[:8])
         self.problems.append(self.origin.problem(line, column, path, message, **more))
 

@@ -215,4 +215,5 @@ class Binder:
         return f"{text} is in {unit}, and a {wanted.name}" + (f" in {wanted.unit}" if wanted.unit else "") + " is expected"
 
     def report(self, path: Path, message: str, allowed: str, suggestion: str, text: str) -> None:
+        """What is wrong with a formula at a path."""
         self.found.append(Finding(path, message, allowed, suggestion, given=SIGN + text))

@@ -11,6 +11,7 @@ from mpm.config.rules_scene import heats, moves
 
 
 def chart(experiment: Any) -> Iterator[Finding]:
+    """What a chart compares is there, and its reference is one of its methods."""
     if experiment.chart is None or experiment.chart is MISSING:
         return
     yield from compared(experiment)

@@ -37,6 +37,7 @@ def hindered(experiment: Any) -> str:
 
 
 def frame(experiment: Any) -> Iterator[Finding]:
+    """What the total frame does not do yet, of the whole experiment."""
     method = experiment.method
     if method.frame != "total":
         return
@@ -63,6 +64,7 @@ def frame(experiment: Any) -> Iterator[Finding]:
 
 
 def frame_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
+    """Of a wall."""
     if experiment.method.frame == "total" and getattr(item, "heat", None) is not None:
         said = "walls exchange no heat in the total frame: what lies on one exchanges through its own surface"
         yield Finding(("walls", side, item.kind, "heat"), said, ["an entry under surfaces", UPDATED], on_key=True)
@@ -71,6 +73,7 @@ def frame_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
 
 
 def frame_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """Of a material."""
     if experiment.method.frame != "total" or item.elastic is None:
         return
     if item.heat is not None and known(lambda: item.heat.alpha.kind != "constant"):

@@ -11,6 +11,7 @@ EXPLICIT = "method.mechanics: explicit"
 
 
 def asked(experiment: Any) -> bool:
+    """Whether mechanics is implicit; no where that is not known."""
     return known(lambda: experiment.method.mechanics == "implicit")
 
 
@@ -32,6 +33,7 @@ def hindered(experiment: Any) -> str:
 
 
 def mechanics(experiment: Any) -> Iterator[Finding]:
+    """What implicit mechanics does not do yet, of the whole experiment."""
     method, grid = experiment.method, experiment.grid
     if not asked(experiment):
         if known(lambda: method.mechanics == "explicit" and method.mechanics_tolerance != type(method).model_fields["mechanics_tolerance"].default):
@@ -62,12 +64,14 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
 
 
 def mechanics_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
+    """Of a wall."""
     if asked(experiment) and known(lambda: item.acts == "contact" and 0 < item.friction < float("inf")):
         said = "implicit mechanics knows contact without friction, or without sliding"
         yield Finding(("walls", side, item.kind, "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """Of a material."""
     if not asked(experiment) or item.elastic is None:
         return
     if item.elastic.kind != "hencky":

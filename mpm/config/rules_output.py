@@ -17,6 +17,7 @@ OF_MOTION = ("momentum", "energy", "dissipation", "position", "extent", "velocit
 
 
 def clock(experiment: Any) -> Iterator[Finding]:
+    """Series and snapshots have at most MOST_SAMPLES times."""
     every, end = experiment.output.every, experiment.time.end
     if every is not None and end / every > MOST_SAMPLES:
         yield Finding(("output", "every"), f"the series would have {end / every:.3g} samples", f"at least {end / MOST_SAMPLES:g} [s]", given=every)
@@ -28,6 +29,7 @@ def clock(experiment: Any) -> Iterator[Finding]:
 
 
 def probe(experiment: Any, name: str, point: Any) -> Iterator[Finding]:
+    """A probe has a name of its own, lies in the domain, and has something to tell."""
     path = ("output", "probes", name)
     yield from plain_names(experiment, "output.probes", [name])
     yield from taken(name)
@@ -100,10 +102,12 @@ def overview(experiment: Any) -> Iterator[Finding]:
 
 
 def probes(experiment: Any) -> Iterator[tuple]:
+    """Each probe with its name."""
     yield from list(experiment.output.probes.items())
 
 
 def observables(experiment: Any) -> Iterator[tuple]:
+    """Number and name of each observable, and whether bodies have heat and move."""
     physics = (known(heats, experiment), known(moves, experiment))
     yield from ((index, name, *physics) for index, name in enumerate(experiment.output.observables))
 
@@ -117,6 +121,7 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
 
 
 def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, path: tuple = ()) -> Iterator[Finding]:
+    """There is such an observable, and the scene has what it needs: the dimension, heat or motion, the probe, the body."""
     from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, single, threshold
 
     path = path or ("output", "observables", index)
@@ -168,6 +173,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
 
 
 def snapshots(experiment: Any) -> Iterator[Finding]:
+    """There are such fields, and the scene has them."""
     from mpm.records.variables import FIELDS_GRID, FIELDS_PARTICLES
 
     shots, still = experiment.output.snapshots, not known(moves, experiment)
@@ -184,6 +190,7 @@ def snapshots(experiment: Any) -> Iterator[Finding]:
 
 
 def exact(experiment: Any) -> Iterator[Finding]:
+    """Which body the exact solution is of."""
     solution = experiment.exact
     if solution is None:
         return

@@ -41,6 +41,7 @@ def names(experiment: Any) -> Iterator[Finding]:
 
 
 def grid(experiment: Any) -> Iterator[Finding]:
+    """One length a direction, no cell larger than the domain, and at most a billion cells."""
     size, cell = experiment.grid.size, experiment.grid.cell
     if cell is None or not size:
         return  # rules_point.py says what is missing, and what is not wanted
@@ -60,6 +61,7 @@ def body(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 
 def body_shape(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """A shape suits the dimension and lies in the domain."""
     at = ("bodies", name, "shape", item.shape.kind)
     wrong = [Finding((*at, *below), message, allowed) for below, message, allowed in misfits(item.shape, experiment.grid.dimension, experiment.grid.directions)]
     yield from wrong
@@ -68,6 +70,7 @@ def body_shape(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 
 def body_motion(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """A velocity has a number a direction, a rotation is in a plane or in space, and what moves is elastic."""
     dimension = experiment.grid.dimension
     if item.velocity is not None:
         yield from vector(experiment, ("bodies", name, "velocity"), item.velocity, "the velocity")
@@ -88,6 +91,7 @@ def body_motion(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 
 def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """What each section needs is there, and laws stand together only where that is known."""
     needs = (
         ("flow", ("elastic",)),
         ("expansion", ("elastic", "heat")),
@@ -122,11 +126,13 @@ def material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
 
 
 def anything(experiment: Any) -> Iterator[Finding]:
+    """Some body has heat or elasticity."""
     if not moves(experiment) and not heats(experiment):
         yield Finding(("materials",), "no body has any physics, so there is nothing to compute", "an elastic or a heat section", on_key=True)
 
 
 def surface(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """A surface is of a body that is there, and exchanges heat only where that has some."""
     known = experiment.bodies
     if item.of not in known:
         yield Finding(("surfaces", index, "of"), "there is no such body", list(known), near(item.of, known), given=item.of)
@@ -160,6 +166,7 @@ def surface_conducts(experiment: Any, index: int, item: Any) -> Iterator[Finding
 
 
 def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """There is such a side in the dimension."""
     sides = SURFACE_SIDES[experiment.grid.dimension]
     if item.side not in sides:
         yield Finding(
@@ -254,6 +261,7 @@ def heats(experiment: Any) -> bool:
 
 
 def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
+    """There is such a wall in the dimension, and what could take heat from it."""
     sides = WALL_SIDES[experiment.grid.dimension]
     if side not in sides:
         yield Finding(("walls", side), f"there is no such wall in dimension {experiment.grid.dimension}", list(sides), near(side, sides), on_key=True)
@@ -268,6 +276,7 @@ def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
 
 
 def mechanics(experiment: Any) -> Iterator[Finding]:
+    """Walls and gravity have a body to act on."""
     if (experiment.walls or experiment.gravity is not None) and not moves(experiment):
         for key in ("walls", "gravity"):
             if getattr(experiment, key):

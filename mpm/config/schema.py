@@ -15,6 +15,7 @@ class Plain(GenerateJsonSchema):
     """Defaults as a config would write them, and an example of every key."""
 
     def model_schema(self, schema: core_schema.ModelSchema) -> dict[str, Any]:
+        """Of a class, with an example of each of its keys."""
         made, kind = super().model_schema(schema), schema["cls"]
         bases = tuple(base.__name__ for base in kind.__mro__)
         for name, part in made.get("properties", {}).items():
@@ -23,6 +24,7 @@ class Plain(GenerateJsonSchema):
         return made
 
     def encode_default(self, dft: Any) -> Any:
+        """A default as a config writes it."""
         if isinstance(dft, Kind) and dft.bare() and not plain(dft, defaults=False)[dft.kind]:
             return dft.kind
         return plain(dft, defaults=False) if isinstance(dft, Model) else super().encode_default(dft)

@@ -108,6 +108,7 @@ class Vary:
         parameter.low, parameter.high = (self.end(parameter, ends[index], (*where, index), log) for index in range(2))
 
     def axis(self, name: str, axis: Any) -> list[Group]:
+        """The group of one axis; none where it is wrong."""
         where: Path = ("sweep", "axes", name)
         parameter = self.parameter(name, where)
         if parameter is None:
@@ -132,6 +133,7 @@ class Vary:
             seen.add(text)
 
     def zip(self, index: int, together: dict[str, tuple]) -> list[Group]:
+        """The group of parameters that move together; none where they are wrong."""
         where: Path = ("sweep", "zip", index)
         parameters, sizes = [], {name: len(values) for name, values in together.items()}
         if not together:
@@ -146,6 +148,7 @@ class Vary:
         return [Group("zip", parameters, min(sizes.values()), where)] if parameters else []
 
     def sample(self, sample: Any) -> list[Group]:
+        """The group of a sample's parameters; none where they are wrong."""
         where: Path = ("sweep", "sample", sample.kind)
         parameters = []
         for name, span in sample.ranges.items():
@@ -234,6 +237,7 @@ class Vary:
         return Derived(parameter, formula, self.paths(formula, where))
 
     def where(self, variation: Variation, text: str) -> None:
+        """The condition that points must meet, and what its names stand for."""
         where: Path = ("sweep", "where")
         if condition := self.formula(Condition, text, where):
             variation.condition, variation.names = condition, self.paths(condition, where)

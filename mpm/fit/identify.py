@@ -42,6 +42,7 @@ class Known:
 
     @property
     def values(self) -> np.ndarray:
+        """The parameters, in SI."""
         return np.array(self.problem.values(self.u))
 
     @property
@@ -57,6 +58,7 @@ class Known:
 
     @property
     def correlation(self) -> np.ndarray:
+        """Of the parameters, without units."""
         d = np.sqrt(np.diag(self.shape))
         return self.shape / d[:, None] / d[None, :]
 

@@ -40,6 +40,7 @@ class Searches:
 
     @property
     def best(self) -> Search:
+        """The search that came lowest."""
         return self.found[0]
 
     def alike(self, span: np.ndarray) -> int:

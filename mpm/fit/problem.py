@@ -97,6 +97,7 @@ class Problem:
 
     @property
     def names(self) -> list[str]:
+        """Of the parameters."""
         return [parameter.name for parameter in self.parameters]
 
     @property

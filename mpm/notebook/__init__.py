@@ -84,14 +84,17 @@ class Bar(Reporter):
         self.handle.update(self.html(f"{least} {self.done} of {self.total}{failed} {html.escape(self.said)}{lines}"))
 
     def start(self, total: int, done: int, jobs: int) -> None:
+        """Show the bar."""
         self.total, self.done = total, done
         self.write()
 
     def beat(self, running: dict[str, float]) -> None:
+        """The bar moves with the fractions of what runs."""
         self.part = sum(running.values())
         self.write()
 
     def finished(self, label: str, line: dict, again: bool) -> None:
+        """One more point; why one failed is told below the bar."""
         self.done += not again
         self.part = 0.0
         if line["status"] != 0:
@@ -100,14 +103,17 @@ class Bar(Reporter):
         self.write()
 
     def compiling(self, text: str, expected: float) -> None:
+        """What is compiled, behind the bar."""
         self.said = text
         self.write()
 
     def note(self, text: str) -> None:
+        """A line below the bar."""
         self.notes.append(text)
         self.write()
 
     def close(self) -> None:
+        """The bar says no more."""
         self.said = ""
         self.write()
 

@@ -148,6 +148,7 @@ class Figure:
 
 
 def positive(values: np.ndarray) -> bool:
+    """Whether a logarithm can be taken of all."""
     return bool(np.min(values) > 0)
 
 

@@ -167,6 +167,7 @@ class Plain(Formatter):
         return number(value)
 
     def format_ticks(self, values: Any) -> list[str]:
+        """All ticks, with as many digits as tell them apart."""
         return numbers(map(float, values))
 
 

@@ -85,6 +85,7 @@ class Entries(Sequence):
             return body["particles"][name][()]
 
     def opened(self) -> "Entries":
+        """Itself: it is open."""
         return self
 
 
@@ -137,6 +138,7 @@ class Stream(Frames, Sequence):
 
     @property
     def times(self) -> np.ndarray:
+        """When they were taken [s]."""
         return np.array(self.seconds) if self.ends else super().times
 
     def __len__(self) -> int:
@@ -146,6 +148,7 @@ class Stream(Frames, Sequence):
         return self.opened()[k] if self.ends else Frame(*self.held[k])
 
     def add(self, when: float, grid: dict, particles: dict) -> None:
+        """Take a frame at a time [s]; beyond SPILL bytes all go to the file."""
         super().add(when, grid, particles)
         self.bytes += sum(np.asarray(values).nbytes for fields in (grid, particles) for values in fields.values())
         if self.bytes > SPILL:
@@ -170,6 +173,7 @@ class Stream(Frames, Sequence):
         self.seconds.append(when)
 
     def drop(self) -> None:
+        """Forget the last."""
         if self.ends:
             self.ends.pop()
             self.seconds.pop()
@@ -177,6 +181,7 @@ class Stream(Frames, Sequence):
             super().drop()
 
     def clear(self) -> None:
+        """Forget all; the file is not touched."""
         super().clear()
         self.bytes, self.ends, self.seconds = 0, [], []
 
@@ -186,6 +191,7 @@ class Stream(Frames, Sequence):
         return {"held": super().memory(), "bytes": self.bytes, "ends": np.array(self.ends, int), "times": np.array(self.seconds)}
 
     def recall(self, found: Any) -> None:
+        """Go on from what `memory` gave."""
         super().recall(found["held"])
         self.bytes, self.ends, self.seconds = int(found["bytes"]), found["ends"].tolist(), found["times"].tolist()
 

@@ -39,6 +39,7 @@ class Careful(io.FileIO):
     error: OSError | None = None
 
     def write(self, data: Any) -> int:
+        """All of it, however much the system takes at once; after the first error, which is kept, what comes is lost."""
         view = memoryview(data).cast("B")
         whole = len(view)
         try:

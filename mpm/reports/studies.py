@@ -120,24 +120,28 @@ def chart_tables(root: Any) -> list[dict[str, Any]]:
 
 
 def fit_figure(tree: Any) -> Any:
+    """Measured and fitted curves."""
     from mpm.plots.fit import draw
 
     return draw(tree)
 
 
 def sensitivity_figure(tree: Any) -> Any:
+    """The indices of every parameter."""
     from mpm.plots.sensitivity import draw
 
     return draw(tree.to_dataset())
 
 
 def stability_figure(tree: Any) -> Any:
+    """The map."""
     from mpm.plots.stability import draw
 
     return draw(tree)
 
 
 def chart_figure(tree: Any) -> Any:
+    """Error of every setting over the time that it takes."""
     from mpm.plots.chart import speed_accuracy
 
     return speed_accuracy(tree.to_dataset())

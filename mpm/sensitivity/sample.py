@@ -26,6 +26,7 @@ class Parameter:
 
     @property
     def ends(self) -> tuple[float, float]:
+        """The lowest and the highest value, in SI."""
         return float(self.values.min()), float(self.values.max())
 
     def unit(self, values: Any) -> np.ndarray:

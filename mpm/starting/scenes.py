@@ -24,6 +24,7 @@ class Scene:
 
     @property
     def name(self) -> str:
+        """The name of its file, without the suffix."""
         return self.file.stem
 
 

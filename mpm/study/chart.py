@@ -64,6 +64,7 @@ def with_chart(experiment: Any, quick: bool = False) -> Any:
 
 
 def shortened(paths: dict[str, dict[str, Any]], most: int = QUICK) -> dict[str, dict[str, Any]]:
+    """The first `most` values of each path."""
     return {path: {name: list(values)[:most] for name, values in refined.items()} for path, refined in paths.items()}
 
 

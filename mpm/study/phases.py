@@ -31,6 +31,7 @@ WITHOUT = {"heat": ("heat", "expansion", "heating"), "flow": ("flow",), "expansi
 
 @kernel
 def gathers(scheme, space, gradient, body, chunk, nodes, force, times):
+    """Particles gather from the grid, so many times over."""
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
@@ -40,6 +41,7 @@ def gathers(scheme, space, gradient, body, chunk, nodes, force, times):
 
 @kernel
 def moves(space, body, chunk, dt, report, times):
+    """Particles move, so many times over."""
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
@@ -49,6 +51,7 @@ def moves(space, body, chunk, dt, report, times):
 
 @kernel
 def responds(space, gradient, body, chunk, dt, report, times):
+    """Particles respond to their strain, so many times over."""
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
@@ -57,6 +60,7 @@ def responds(space, gradient, body, chunk, dt, report, times):
 
 @kernel
 def spreads(scheme, space, gradient, body, chunk, nodes, force, box, times):
+    """Particles spread to the grid, so many times over."""
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):

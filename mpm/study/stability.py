@@ -70,6 +70,7 @@ class Map:
 
     @property
     def stability(self) -> Any:
+        """The section of the config."""
         return self.experiment.stability
 
     def narrow(self, low: float, high: float) -> bool:

@@ -111,12 +111,23 @@ class Executor(Protocol):
     wanted: int  # workers worth having now; fewer points left need fewer workers
 
     @property
-    def free(self) -> int: ...
-    def submit(self, task: Task) -> None: ...
-    def poll(self, timeout: float) -> list[Event]: ...
-    def cancel(self, task: str, why: str) -> None: ...
-    def kill(self, task: str, why: str) -> None: ...
-    def close(self) -> None: ...
+    def free(self) -> int:
+        """How many tasks it would take now."""
+
+    def submit(self, task: Task) -> None:
+        """Start a task."""
+
+    def poll(self, timeout: float) -> list[Event]:
+        """What has happened, after at most `timeout` seconds."""
+
+    def cancel(self, task: str, why: str) -> None:
+        """Ask a task to stop: "timeout" keeps a record of it, "cancel" keeps none."""
+
+    def kill(self, task: str, why: str) -> None:
+        """End the worker of a task; `poll` tells its loss, with `why` in place of the signal."""
+
+    def close(self) -> None:
+        """End all workers."""
 
 
 def event(message: dict[str, Any]) -> Event:

@@ -44,6 +44,7 @@ class Cell:
     error: float = math.inf
 
     def corners(self) -> list[Place]:
+        """Its 2^d corners."""
         return list(itertools.product(*zip(self.low, self.high, strict=True)))
 
     def lattice(self) -> list[Place]:
@@ -75,6 +76,7 @@ class Mesh:
 
     @property
     def spans(self) -> np.ndarray:
+        """Length of each axis, of its logarithm where points are even in that."""
         return np.array([axis[-1] - axis[0] for axis in self.grid])
 
     @property
@@ -99,6 +101,7 @@ class Mesh:
         return list(itertools.product(*self.grid))
 
     def small(self, cell: Cell) -> bool:
+        """Whether a cell is as small along every axis as was asked for."""
         return bool(np.all((np.array(cell.high) - np.array(cell.low)) / self.spans <= self.asked.until * (1 + 1e-9)))
 
     def wants(self, cell: Cell) -> bool:

@@ -242,6 +242,7 @@ class Rows(Sequence):
         return Frame(float(self.times[k]), {}, {name: self.part(k, name) for name in self.particles})
 
     def part(self, k: int, name: str) -> np.ndarray:
+        """One field of the particles of snapshot k."""
         return self.particles[name][self.ends[k] - self.sizes[k] : self.ends[k]]
 
 
