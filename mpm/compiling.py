@@ -27,12 +27,12 @@ NAMES = {
     "heat_implicit": "the heat step", "advance_touching": "the step of bodies that touch",
 }  # fmt: skip
 USUAL = (25, 0.5)  # functions, and seconds, of a kernel never met
-MET = {  # of the large ones
-    "advance": (190, 6.0), "heat_chebyshev": (120, 4.0), "heat_step": (100, 3.0), "heat_implicit": (120, 4.0), "advance_touching": (250, 9.0),
+MET = {  # of the large ones, on an idle core of the machine of docs/speed.md; `advance_touching` after `advance`
+    "advance": (150, 11.0), "heat_chebyshev": (40, 3.5), "heat_step": (35, 3.0), "heat_implicit": (60, 4.0), "advance_touching": (105, 13.5),
 }  # fmt: skip
 KERNELS = {"at rest": 8, "moving": 12}  # that a scene takes, where this machine has met none of its sort
 LINKING = 0.3  # of a kernel's time, after its last function: linking, optimising, machine code
-MOVING, RESTING = 1.5, 3.0  # seconds of the small kernels of bodies that move, and of those of all that rests
+MOVING, RESTING = 2.5, 3.0  # seconds of the small kernels of bodies that move, and of those of all that rests
 UNLIKE = ("title", "output", "time", "sweep", "smoke", "chart", "stability")  # parts of a config that compile nothing
 
 
@@ -41,7 +41,7 @@ class Spent:
 
     def __init__(self) -> None:
         self.total, self.began, self.functions = 0.0, 0.0, 0
-        self.kernels, self.about = 0, 0  # compiled so far, and how many a scene of this sort took
+        self.kernels, self.about = 0, 0  # compiled for this scene, and how many one of this sort took
         self.begun = self.remembered = False
         self.heard: list[Callable[[str, float, float], None]] = []
 
@@ -54,7 +54,8 @@ class Spent:
         elif function is None:
             took = now - self.began
             self.total += took
-            keep(kernel, self.functions, took)
+            if 2 * self.functions >= met().get(kernel, (0, 0.0))[0]:  # else its process had most of its functions from the kernel before
+                keep(kernel, self.functions, took)
             for listener in self.heard:
                 listener("", 0.0, took)
             return
@@ -160,6 +161,7 @@ def remember(experiment: Any, again: bool) -> None:
             path = place(experiment.resolved())
             path.parent.mkdir(exist_ok=True)
             path.touch()
+    spent.kernels = 0  # those of the next scene of this process are its own
 
 
 def expected(experiment: Any) -> float:

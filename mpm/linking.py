@@ -5,13 +5,12 @@ eight are ever called from Python. Here a callee is typed and lowered only; the 
 once. A nested call uses a table of its own, never what was compiled for Python or loaded from disk, so a kernel's module is a function of source and
 types alone, and so are the last bits of its results.
 
-This replaces methods of Numba (`REPLACED`), for versions in `TESTED` only; elsewhere stock Numba compiles, slower, with bits that may depend on what the
-process compiled before. Only kernels of this package are affected: functions that a user compiles take Numba's own way.
+This replaces methods of Numba (`REPLACED`; those of mpm.shortcuts only save time), for versions in `TESTED` only; elsewhere stock Numba compiles, slower,
+with bits that may depend on what the process compiled before. Only kernels of this package are affected: functions that a user compiles take Numba's own way.
 """
 
 import gc
 import inspect
-import threading
 from contextlib import contextmanager
 
 import numba
@@ -20,28 +19,19 @@ from numba.core import errors, sigutils, types
 from numba.core.codegen import CPUCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher, _FunctionCompiler
-from numba.core.targetconfig import TargetConfig
 
 from mpm import compiling
+from mpm.shortcuts import SHORTCUTS, building, stock
 
 TESTED = (0, 66), (0, 68)  # first and last (major, minor) tried: the last by the default tests, the first by tests/test_linking.py alone
-
-
-class Building(threading.local):
-    """What this thread compiles: 0 nothing of ours, 1 a kernel that Python called, 2 and more its callees."""
-
-    depth = 0
-    kernel = None  # its Python function
 
 
 class Entry:
     """Names a callee that has no machine code of its own."""
 
 
-building = Building()
 listeners = [compiling.spent.hear]  # called with a kernel and itself as it begins, with each function that was lowered for it, and with None when it is ready
 subroutines: dict = {}  # what Numba's own operators compile for our kernels, apart from what they compile for others
-stock: dict = {}  # Numba's own methods, by place, where they are replaced
 
 
 def within_tested(version: str = numba.__version__) -> bool:
@@ -203,19 +193,6 @@ def mergeable(module):
     return module
 
 
-def same_flags(flags, other):
-    """TargetConfig.__eq__, asked a hundred thousand times a kernel: of the options that either has set; all others have their default in both."""
-    if type(flags) is not type(other):
-        return stock["TargetConfig.__eq__"](flags, other)
-    one, two = flags._values, other._values
-    return one == two or all(getattr(flags, name) == getattr(other, name) for name in one.keys() | two.keys())
-
-
-def hash_of_flags(flags):
-    """TargetConfig.__hash__: of the options' names, as Numba's own (which sorts them anew each time)."""
-    return hash(type(flags))
-
-
 REPLACED = (
     (Dispatcher, "compile", compile_),
     (Dispatcher, "get_overload", get_overload),
@@ -225,8 +202,7 @@ REPLACED = (
     (_FunctionCompiler, "_customize_flags", customize_flags),
     (CPUCodeLibrary, "add_linking_library", add_linking_library),
     (CPUCodeLibrary, "finalize", finalize),
-    (TargetConfig, "__eq__", same_flags),
-    (TargetConfig, "__hash__", hash_of_flags),
+    *SHORTCUTS,
 )
 
 

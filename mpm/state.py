@@ -235,6 +235,26 @@ class Body(NamedTuple):
     setting: Any = NoSetting()  # or Setting
 
 
+class Unread(NamedTuple):
+    """Stands for a law that a compiled step does not read."""
+
+
+def as_moved(bodies: tuple) -> tuple:
+    """Bodies as the mechanical step reads them: those that conduct or radiate differently share one compiled step."""
+    return tuple(
+        body._replace(
+            thermal=body.thermal._replace(kappa=Unread()) if isinstance(body.thermal, Thermal) else body.thermal,
+            surface=body.surface._replace(radiation=NoRadiation()) if isinstance(body.surface, Surface) else body.surface,
+        )
+        for body in bodies
+    )
+
+
+def as_heated(body: Body) -> Body:
+    """A body as the heat step reads it: those that move differently share one compiled step."""
+    return Body(body.particles, body.thermal, body.surface, *[Unread()] * (len(Body._fields) - 3))
+
+
 PER_PARTICLE = {  # arrays with a row a particle: they move together when particles are sorted (integrate/sorting.py)
     Particles: Particles._fields,
     Thermal: ("theta", "c"),

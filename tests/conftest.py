@@ -19,6 +19,7 @@ import pytest
 from numba import config as numba_config
 
 import mpm
+from mpm import fingerprint, linking
 
 # What takes longest begins first, so that workers end together: minutes of processor in an empty environment, most of them compiling.
 FIRST = (
@@ -141,6 +142,15 @@ class Told:
         data = self.config.hook.pytest_report_to_serializable(config=self.config, report=report)
         with open(self.place, "a") as file:
             file.write(json.dumps(data) + "\n")
+
+
+def within_its_rooms(kernel, function):
+    """Every kernel that a test compiles holds only rooms that its cache is named after, or an edit would leave it stale."""
+    own, other = (one.__module__.split(".") if one else [""] for one in (kernel, function))
+    assert other[0] != "mpm" or other[1] in fingerprint.contained(own[1]), f"{'.'.join(own)} holds {'.'.join(other)}"
+
+
+linking.listeners.append(within_its_rooms)
 
 
 def pytest_collection_modifyitems(items):

@@ -15,7 +15,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "cache": 0, "fingerprint": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0,
+    "cache": 0, "fingerprint": 0, "shortcuts": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0,
     "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
@@ -26,7 +26,7 @@ LAYERS = {
     "exports": 7, "movies": 7, "reports": 8, "notebook": 9, "benchmarks": 9,
 }  # fmt: skip
 PEERS = {
-    "compiling": {"fingerprint", "jit"}, "linking": {"compiling"},
+    "compiling": {"fingerprint", "jit"}, "linking": {"compiling", "shortcuts"},
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene

@@ -7,11 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
 import mpm
 from mpm import compiling, linking
+from mpm.scene.build import build
+from mpm.state import as_heated, as_moved
 
 ROOT = Path(__file__).parent.parent
 SCENE = {
@@ -28,6 +31,7 @@ SCENE = {
     "surfaces": [{"of": "block", "convection": {"beta": 10.0, "outside": 300.0}}],
     "time": {"end": 0.05},
 }
+BARE = {**SCENE, "materials": {"m": {name: SCENE["materials"]["m"][name] for name in ("density", "elastic")}}, "surfaces": []}  # compiles in half the time
 RUN = """
 import json, sys
 VERSION
@@ -44,10 +48,10 @@ print(json.dumps({"series": series, "astray": astray, "held": len(held), "told":
 """
 
 
-def run(cache, version=""):
+def run(cache, scene, version=""):
     env = os.environ | {"MPM_CACHE_DIR": str(cache)}
     code = RUN.replace("VERSION", f"import numba; numba.__version__ = {version!r}" if version else "")
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, input=json.dumps(SCENE), capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, input=json.dumps(scene), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)
 
@@ -55,10 +59,16 @@ def run(cache, version=""):
 @pytest.fixture(scope="module")
 def cold(tmp_path_factory):
     cache = tmp_path_factory.mktemp("cache")
-    return cache, run(cache)
+    return cache, run(cache, BARE)
+
+
+@pytest.fixture(scope="module")
+def warm(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("cache"), SCENE)
 
 
 def test_a_kernel_holds_only_rooms_that_its_cache_is_named_after(cold):
+    """Of one scene in a process of its own; tests/conftest.py asserts the same of every kernel that any test compiles."""
     assert cold[1]["held"] > 50 and cold[1]["astray"] == []
 
 
@@ -73,19 +83,63 @@ def test_what_is_compiled_is_told_and_timed(cold):
 
 def test_from_the_cache_nothing_is_compiled_and_all_bits_are_the_same(cold):
     cache, first = cold
-    again = run(cache)
+    again = run(cache, BARE)
     assert again["series"] == first["series"] and again["seconds"] == 0.0 and again["said"] == []
+
+
+def test_steps_are_shared_by_bodies_that_differ_in_what_they_do_not_read():
+    """By type, which is all that a kernel is compiled for: the heat step whatever moves a body, the mechanical step whatever law of heat it has."""
+
+    def types(changes):
+        (body,) = build(mpm.load(SCENE, changes)).bodies
+        return numba.typeof(as_heated(body)), numba.typeof(as_moved((body,)))
+
+    m = "materials.m."
+    table = {"table": {"temperature": [300.0, 320.0], "value": [1.0, 2.0]}}
+    heat, motion = types({})
+    flowing = types({m + "flow": {"ellipse": {"M": 1.0, "p0": 1e3, "eta": 1e3}}, m + "expansion": None})
+    conducting = types({m + "heat.fourier.kappa": table, "surfaces.0.radiation": {"emissivity": 0.9, "surroundings": 300.0}})
+    assert flowing[0] == heat and flowing[1] != motion
+    assert conducting[1] == motion and conducting[0] != heat
 
 
 def test_what_has_to_be_compiled_is_foreseen(tmp_path, monkeypatch):
     """Heat and contacts that the config names take seconds more; none once the kernels are there, whatever its numbers."""
     monkeypatch.setattr(compiling, "folder", lambda: tmp_path)
-    bare = {"walls": {"left": "contact"}, **SCENE, "materials": {"m": {name: SCENE["materials"]["m"][name] for name in ("density", "elastic")}}, "surfaces": []}
+    bare = {"walls": {"left": "contact"}, **BARE}
     plain, touching, warm = (compiling.expected(mpm.load(data)) for data in (bare | {"walls": {"left": "slip"}}, bare, SCENE))
     assert 3.0 < plain < min(touching, warm)
     monkeypatch.setattr(compiling.spent, "remembered", False)
     compiling.remember(mpm.load(SCENE), again=False)
     assert compiling.expected(mpm.load(SCENE | {"time": {"end": 0.3}})) == 0.0 < compiling.expected(mpm.load(bare))
+
+
+SHORT = """
+import re, sys
+import numpy as np
+from mpm.integrate import sorting, state_check
+from mpm.shortcuts import SHORTCUTS, stock
+from mpm.state import Plane
+for owner, name, new in SHORTCUTS:
+    assert getattr(owner, name) is new
+    if sys.argv[1] == "stock":
+        setattr(owner, name, stock[f"{owner.__name__}.{name}"])
+x = np.random.default_rng(0).random((40, 2))
+print(state_check.span(x.ravel()), sorting.sorting(sorting.first_nodes(Plane(0.1, 20, 20), x)).tolist())
+for kernel in (state_check.span, sorting.sorting, sorting.first_nodes):
+    print(re.sub(r"B2B\\d+", "", next(iter(kernel.overloads.values())).library.get_llvm_str()))
+"""
+
+
+def test_shortcuts_change_no_instruction(tmp_path):
+    """Lanes, loops, roles, named tuples and what numpy makes: the code of each kernel, but for the numbers that Numba counts functions by."""
+    codes = []
+    for way in ("short", "stock"):
+        env = os.environ | {"MPM_CACHE_DIR": str(tmp_path / way), "PYTHONHASHSEED": "0"}  # names hold flags, in the order of a set
+        done = subprocess.run([sys.executable, "-c", SHORT, way], cwd=ROOT, env=env, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr[-2000:]
+        codes.append(done.stdout)
+    assert len(codes[0]) > 50_000 and codes[0] == codes[1]
 
 
 THREADS = """
@@ -106,19 +160,19 @@ print(json.dumps(found))
 
 
 @pytest.mark.slow
-def test_threads_that_compile_at_once_get_the_same_bits(cold, tmp_path):
+def test_threads_that_compile_at_once_get_the_same_bits(warm, tmp_path):
     env = os.environ | {"MPM_CACHE_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", THREADS], cwd=ROOT, env=env, input=json.dumps(SCENE), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
     found = json.loads(done.stdout)
-    assert set(found) == {"moving", "rigid", "again"} and found["moving"] == found["again"] == cold[1]["series"]
+    assert set(found) == {"moving", "rigid", "again"} and found["moving"] == found["again"] == warm["series"]
 
 
 @pytest.mark.slow
-def test_numba_of_another_version_compiles_its_own_way_says_so_and_agrees_to_round_off(cold, tmp_path):
-    other = run(tmp_path, version="9.9.9")
+def test_numba_of_another_version_compiles_its_own_way_says_so_and_agrees_to_round_off(warm, tmp_path):
+    other = run(tmp_path, SCENE, version="9.9.9")
     assert other["held"] == 0 and len(other["said"]) == 1 and "numba 9.9.9 was not tried with mpm" in other["said"][0]
-    for name, values in cold[1]["series"].items():
+    for name, values in warm["series"].items():
         a, b = (np.array([float.fromhex(value) for value in found]) for found in (values, other["series"][name]))
         assert np.allclose(a, b, rtol=1e-9, atol=1e-12 * max(1.0, np.abs(a).max())), name
 

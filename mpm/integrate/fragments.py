@@ -93,7 +93,9 @@ def count(x, key, order, steps, far, reach):
             first[cells] = i
             cells += 1
     first[cells] = N
-    parent, left, wide = np.arange(cells), cells, 2 * far + 1
+    parent, left, wide = np.empty(cells, np.int64), cells, 2 * far + 1
+    for k in range(cells):
+        parent[k] = k
     for k in range(D):  # the next in each direction joins nearly all
         left -= join(x, order, key, first, cells, parent, steps[k], reach)
     offset = wide**D // 2 + 1  # then one of each pair of opposite ways

@@ -52,10 +52,12 @@ def mixed(nodes, far):
 @kernel
 def sorting(values):
     """The permutation that sorts whole numbers, equal ones in the order they had: values[sorting(values)] rises."""
-    low, high = values.min(), values.max()
+    low = high = values[0]
+    for i in range(values.shape[0]):  # numpy's min and max take Numba longer than all the rest
+        low, high = min(low, values[i]), max(high, values[i])
     places = np.zeros(high - low + 2, np.int64)
-    for value in values:
-        places[value - low + 1] += 1
+    for i in range(values.shape[0]):
+        places[values[i] - low + 1] += 1
     for k in range(1, places.shape[0]):
         places[k] += places[k - 1]
     out = np.empty(values.shape[0], np.int64)

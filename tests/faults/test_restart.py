@@ -76,7 +76,7 @@ def test_a_memory_that_lost_something_is_seen(core, field, monkeypatch):
 
     def lossy(clock, found):
         whole(clock, found)
-        vars(clock)[field] = vars(clock)[field] * 0.75
+        vars(clock)[field] = type(vars(clock)[field])(vars(clock)[field] * 0.75)
 
     monkeypatch.setattr(Clock, "recall", lossy)
     experiment = core.experiment(1, {"beta": 5.0, "outside": 300.0}, output=LOOKS, method=core.methods("apic") | {"heat": {"explicit": {}}}, time={"end": 1.0})

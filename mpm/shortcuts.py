@@ -1,0 +1,112 @@
+"""What Numba works out anew for every instruction of a kernel, worked out once: a fifth of the time that a kernel takes to compile.
+
+Replacements of Numba's methods, installed by mpm.linking for the versions that it was tested with. They act while a kernel of ours is built and give what the
+stock method gives, so a kernel's code, and with it every bit of its results, is the same with and without them (tests/test_linking.py).
+"""
+
+import threading
+from types import BuiltinFunctionType
+
+from numba.core import ir
+from numba.core.base import BaseContext
+from numba.core.codegen import CPUCodeLibrary
+from numba.core.postproc import PostProcessor, VariableLifetime
+from numba.core.targetconfig import TargetConfig
+from numba.core.transforms import canonicalize_cfg
+from numba.core.types.functions import BaseFunction
+
+
+class Building(threading.local):
+    """What this thread compiles: 0 nothing of ours, 1 a kernel that Python called, 2 and more its callees."""
+
+    depth = 0
+    kernel = None  # its Python function
+
+
+building = Building()
+stock: dict = {}  # Numba's own methods, by place, where they are replaced
+sizes: dict = {}  # bytes of LLVM types, by their text
+PLAIN = {str, int, float, bool, type(None), type, BuiltinFunctionType, ir.Loc}  # parts of an instruction that hold no variable
+
+
+def get_call_type(function, context, args, kws):
+    """BaseFunction.get_call_type: each time it tries all that an operator can do with any type, and words what does not fit.
+
+    What compiles a function of its own for the types (`overload`) is asked each time: Numba keeps one copy of that, whoever compiled last.
+    """
+    if not building.depth:
+        return stock["BaseFunction.get_call_type"](function, context, args, kws)
+    met, kinds = function.__dict__.setdefault("_met", {}), (args, tuple(kws.items()))
+    if kinds not in met:
+        signature = stock["BaseFunction.get_call_type"](function, context, args, kws)
+        if function.get_impl_key(signature) is not function.typing_key:
+            return signature
+        met[kinds] = signature
+    return met[kinds]
+
+
+def get_abi_sizeof(context, kind):
+    """BaseContext.get_abi_sizeof: it has a module parsed for every question."""
+    if not building.depth:
+        return stock["BaseContext.get_abi_sizeof"](context, kind)
+    if (text := str(kind)) not in sizes:
+        sizes[text] = stock["BaseContext.get_abi_sizeof"](context, kind)
+    return sizes[text]
+
+
+def optimize_functions(library, module):
+    """CPUCodeLibrary._optimize_functions: one set of passes for all functions of a module, and none for those that are only declared."""
+    if not building.depth:
+        return stock["CPUCodeLibrary._optimize_functions"](library, module)
+    module.data_layout = library._codegen._data_layout
+    passes, builder = library._codegen._function_pass_manager()
+    for function in module.functions:
+        if not function.is_declaration:
+            passes.run(function, builder)
+
+
+def post_process(processor, emit_dels=False, extend_lifetimes=False):
+    """PostProcessor.run: asked after most passes, of which the last alone reads when variables die. Generators and the interpreter's mode read more."""
+    if not building.depth or emit_dels or processor.func_ir.is_generator:
+        return stock["PostProcessor.run"](processor, emit_dels, extend_lifetimes)
+    processor.func_ir.blocks = canonicalize_cfg(processor.func_ir.blocks)
+    processor.func_ir.variable_lifetime = VariableLifetime(processor.func_ir.blocks)
+    processor.func_ir.generator_info = None
+
+
+def variables_in(instruction, part):
+    """ir.Inst._rec_list_vars: most parts of an instruction are told by their type alone."""
+    kind = type(part)
+    if kind is not dict and kind is not tuple and kind is not list:
+        return [part] if kind is ir.Var else [] if kind in PLAIN else stock["Inst._rec_list_vars"](instruction, part)
+    found = []
+    for one in part.values() if kind is dict else part:
+        if type(one) is ir.Var:
+            found.append(one)
+        elif type(one) not in PLAIN:
+            found += variables_in(instruction, one)
+    return found
+
+
+def same_flags(flags, other):
+    """TargetConfig.__eq__, asked a hundred thousand times a kernel: of the options that either has set; all others have their default in both."""
+    if type(flags) is not type(other):
+        return stock["TargetConfig.__eq__"](flags, other)
+    one, two = flags._values, other._values
+    return one == two or all(getattr(flags, name) == getattr(other, name) for name in one.keys() | two.keys())
+
+
+def hash_of_flags(flags):
+    """TargetConfig.__hash__: of the options' names, as Numba's own (which sorts them anew each time)."""
+    return hash(type(flags))
+
+
+SHORTCUTS = (
+    (BaseFunction, "get_call_type", get_call_type),
+    (BaseContext, "get_abi_sizeof", get_abi_sizeof),
+    (CPUCodeLibrary, "_optimize_functions", optimize_functions),
+    (PostProcessor, "run", post_process),
+    (ir.Inst, "_rec_list_vars", variables_in),
+    (TargetConfig, "__eq__", same_flags),
+    (TargetConfig, "__hash__", hash_of_flags),
+)
