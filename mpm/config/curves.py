@@ -21,7 +21,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mpm.config.headers import DAYS, SHORT, TIMES, Unreadable, fields, header, is_export, seconds_of, unit_of, units_of, with_units
+from mpm.config.headers import BRACKET, DAYS, SHORT, TIMES, Unreadable, fields, header, is_export, seconds_of, unit_of, units_of, with_units
 from mpm.config.problems import brief, listed
 
 DATE = r"(?:(?P<date>\d{4}[-/]\d{2}[-/]\d{2}|\d{1,2}[./]\d{1,2}[./](?:\d{4}|\d{2})),?[T ]\s*)?"
@@ -29,8 +29,8 @@ CLOCK = re.compile(DATE + r"(?P<hour>\d{1,3}):(?P<minute>\d{2})(?::(?P<second>\d
                    r"(?P<zone>Z|[+-]\d{2}:?\d{2})?")  # fmt: skip
 SLASHED = re.compile(r"(\d{1,2})/(\d{1,2})/\d{2,4}\b")
 DEGREES = {f"{word}{unit}": f"deg{unit.upper()}" for unit in "cf" for word in ("", "deg ", "deg. ", "degree ", "degrees ")}  # as people write them in a header
-DEGREES |= {"celsius": "degC", "fahrenheit": "degF", "degrees celsius": "degC", "degrees fahrenheit": "degF"}
-LETTERS = set("°µ²³äöüÄÖÜßéèàç".encode("cp1252"))  # of files that a spreadsheet wrote in Windows-1252
+DEGREES |= {"℃": "degC", "℉": "degF", "celsius": "degC", "fahrenheit": "degF", "degrees celsius": "degC", "degrees fahrenheit": "degF"}
+LETTERS = set("°ºµ²³äöüÄÖÜßéèàç".encode("cp1252"))  # of files that a spreadsheet wrote in Windows-1252
 MOST_BYTES, MOST_ROWS = 64 * 2**20, 100_000  # of a file; of its curve, which every point carries
 
 
@@ -236,14 +236,14 @@ def conversion(head: int, name: str, units: str, given: str, key: str, like: str
                          f"a name with one of the dimension of {units}, as {name} [{units}], or `unit: {units}`", key)  # fmt: skip
     wrong = None
     for unit in told or ["1"]:
-        unit = DEGREES.get(unit.lower().replace("°", "", 1).strip(), unit) if units == "K" else unit
+        unit = DEGREES.get(re.sub("[°º˚]", "", unit).strip().lower(), unit) if units == "K" else "1" if unit == "-" else unit
         try:
             zero, one = (convert(f"{k} {unit}", units, "value", difference) for k in (0, 1))
             break
         except UnitError as error:
             wrong = wrong or error
     else:
-        if units == "1" and not given:
+        if units == "1" and not given and not BRACKET.search(name):  # `lateral_strain` ends in no unit
             return lambda number: number
         force = ", as gf where a force is told in grams" if units == "N" else ""
         words = f"the unit of the column {name!r}: {wrong}"

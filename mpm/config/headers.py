@@ -14,7 +14,8 @@ NO_UNIT = re.compile(r"(?:time|timestamp|elapsed|elapsed time|clock|clock time|z
 DAYS = re.compile(r"date|datum|day|tag", re.IGNORECASE)
 TIMES = {"second": 1.0, "seconds": 1.0, "sec": 1.0, "secs": 1.0, "s": 1.0, "sekunde": 1.0, "sekunden": 1.0, "sek": 1.0, "minute": 60.0, "minutes": 60.0,
          "min": 60.0, "mins": 60.0, "minuten": 60.0, "hour": 3600.0, "hours": 3600.0, "h": 3600.0, "hr": 3600.0, "hrs": 3600.0, "stunde": 3600.0,
-         "stunden": 3600.0, "ms": 1e-3, "day": 86400.0, "days": 86400.0, "d": 86400.0}  # fmt: skip
+         "stunden": 3600.0, "ms": 1e-3, "msec": 1e-3, "day": 86400.0, "days": 86400.0, "d": 86400.0}  # fmt: skip
+BRACKET = re.compile(r"(?:\[([^\[\]]+)\]|\(((?:[^()]|\([^()]*\))+)\))\s*$")
 SHORT = re.compile(r"m+:s+", re.IGNORECASE)  # minutes and seconds
 CLOCKED = re.compile(r"(h+:)?m+:s+|h+:m+", re.IGNORECASE)
 MOST_BEFORE = 30  # lines before the header
@@ -40,8 +41,8 @@ def fields(number: int, line: str, sign: str) -> list[str]:
 
 def units_of(name: str) -> list[str]:
     """The units that a name may tell, the likeliest first."""
-    if bracket := re.search(r"[\[(]([^\])]+)[\])]\s*$", name):
-        return [bracket[1].strip()]
+    if bracket := BRACKET.search(name):
+        return [(bracket[1] or bracket[2]).strip()]
     found = [name.rpartition("_")[2].strip()] if "_" in name else []
     found += [name.partition(sign)[2].strip() for sign in "/," if sign in name]
     if degrees := re.search(r"(?:°|\bdeg\.? ?)[CF]$", name):
@@ -63,7 +64,7 @@ def seconds_of(name: str) -> float | None:
     for unit in (*units_of(name), name.rpartition(" ")[2]):
         if CLOCKED.fullmatch(unit):
             return math.nan
-        bracket = re.search(r"[\[(][^\])]+[\])]\s*$", name)
+        bracket = BRACKET.search(name)
         stem = name[: bracket.start()] if bracket else name.removesuffix(unit)
         if unit.lower() in TIMES and ((bracket and unit.lower() != "d") or LIKE_TIME.fullmatch(stem.strip(" _/,"))):
             return TIMES[unit.lower()]
