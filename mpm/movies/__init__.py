@@ -116,7 +116,8 @@ def canvas(found: Results, shown: list[Point], of: str | None, inches: tuple[flo
         fig = Picture(figsize=inches, layout="constrained", dpi=DPI)
         fig.suptitle(wrapped(title, int(9.5 * inches[0])), fontsize=10.5, x=0.01, ha="left")
         panels = list(fig.subplots(down, across, squeeze=False, sharex=True, sharey=True).ravel())
-        stages = [Stage(ax, look, names[k // columns if columns > 1 else k]) for k, ax in enumerate(panels) if k < len(shown) * columns]
+        of_panel = [k // columns if columns > 1 else k for k in range(len(shown) * columns)]
+        stages = [Stage(ax, look, names[k], dict(shown[k].shots.axes)) for ax, k in zip(panels, of_panel, strict=False)]
         for ax in panels[len(stages) :]:
             ax.set_axis_off()
         for k, stage in enumerate(stages):

@@ -40,7 +40,6 @@ class Look:
     clock: words.Scale
     mappable: Any
     label: str
-    axes: dict[str, np.ndarray]
 
     @property
     def aspect(self) -> float:
@@ -61,8 +60,8 @@ def looks(found: Results, shown: list[Point], of: str | None) -> Look:
     if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
         low, high = low - 0.5, high + 0.5  # one value everywhere
     dimension, config = found.dimension, found.view.config
-    axes, mirrored = dict(shown[0].shots.axes), dimension == "axisymmetric"
-    solid = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(axes, dimension)]
+    mirrored = dimension == "axisymmetric"
+    solid = [flat(frame.particles["position"], dimension) for frame in some] if not on_grid else [edges(point.shots.axes) for point in shown]
     places = np.concatenate([place[:, :2] for place in solid])
     box = np.array([places.min(axis=0), places.max(axis=0)])
     if mirrored:
@@ -73,7 +72,7 @@ def looks(found: Results, shown: list[Point], of: str | None) -> Look:
     name = words.title_case(words.short(VARIABLES[field].long_name)) if field in VARIABLES else field
     bare = ScalarMappable(Normalize(low, high), matplotlib.colormaps["inferno"])
     times = words.scale(shown[0].shots.times, "s")
-    return Look(field, on_grid, dimension, mirrored, config, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units), axes)
+    return Look(field, on_grid, dimension, mirrored, config, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units))
 
 
 def with_tools(box: np.ndarray, config: dict[str, Any], some: list[Any], mirrored: bool) -> np.ndarray:
@@ -125,7 +124,7 @@ def flat(x: np.ndarray, dimension: Any) -> np.ndarray:
     return np.column_stack([across, x[:, 2] * np.cos(UP) - toward * np.sin(UP), toward * np.cos(UP) + x[:, 2] * np.sin(UP)])
 
 
-def edges(axes: dict[str, np.ndarray], dimension: Any) -> np.ndarray:
+def edges(axes: dict[str, np.ndarray]) -> np.ndarray:
     """Corners of the grid, as places on the panel."""
     first, *rest = reversed(axes.values())
     up = rest[-1] if rest else np.zeros(1)
@@ -135,8 +134,8 @@ def edges(axes: dict[str, np.ndarray], dimension: Any) -> np.ndarray:
 class Stage:
     """A panel. `show(frame)` draws a snapshot in the place of the one before."""
 
-    def __init__(self, ax: Any, look: Look, label: str):
-        self.ax, self.look, self.named = ax, look, label
+    def __init__(self, ax: Any, look: Look, label: str, axes: dict[str, np.ndarray]):
+        self.ax, self.look, self.named, self.axes = ax, look, label, axes
         self.drawn: list[Any] = []
         ax.set_aspect("equal" if look.dimension != 1 else "auto")
         ax.grid(False)
@@ -218,7 +217,7 @@ class Stage:
     def on_grid(self, frame: Any, values: np.ndarray, lines: bool) -> None:
         """A field on the grid: in 3-D the slice through the middle."""
         look = self.look
-        axes = list(look.axes.values())
+        axes = list(self.axes.values())
         if values.ndim == 3:
             values, axes = values[:, values.shape[1] // 2], [axes[0], axes[2]]
         across, up = look.length(axes[-1]), look.length(axes[0]) if values.ndim == 2 else None

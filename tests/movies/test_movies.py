@@ -1,5 +1,7 @@
 """Movies and stills: as many frames as asked, that differ, in every format; the field, the points and the walls that were asked for."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -121,3 +123,30 @@ def test_tools_are_drawn_where_they_stand_and_leave(tmp_path, monkeypatch):
     assert [len(found) for found in loops] == [1, 1, 0]
     lower = [found[0].get_ydata().min() for found in loops[:2]]
     assert lower == pytest.approx([30, 25])  # mm
+
+
+def test_points_with_grids_of_their_own_side_by_side(tmp_path, monkeypatch):
+    """Two handmade points: on 11 nodes and on 6."""
+    import fake_runner
+
+    before = fake_runner.run_point
+
+    def run_point(experiment, beat=None, keeper=None):
+        record, nodes = before(experiment, beat, keeper), round(0.05 / experiment.grid.cell) + 1
+        snapshots = len(record.snapshot_times)
+        return dataclasses.replace(record, axes={"x": np.linspace(0, 0.05, nodes)}, grid={"temperature": np.full((snapshots, nodes), 300.0, np.float32)})
+
+    monkeypatch.setattr(fake_runner, "run_point", run_point)
+    monkeypatch.setattr(engine, "RUNNER", "fake_runner")
+    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
+    config = {
+        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
+        "bodies": {"s": body},
+        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
+        "time": {"end": 10},
+        "output": {"every": 1, "snapshots": {"every": 2, "grid": ["temperature"]}},
+        "sweep": {"axes": {"grid.cell": [0.005, 0.01]}},
+    }
+    mpm.sweep(mpm.load(config), out=tmp_path / "s", jobs=0)
+    figure = still(tmp_path / "s", ["cell=all"], of="temperature", at=[0])
+    assert [len(ax.collections[0].get_offsets()) for ax in figure.axes[:2]] == [11, 6]
