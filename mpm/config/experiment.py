@@ -71,7 +71,7 @@ class Experiment(Model):
         """The same data; where it was read from is no difference."""
         return self.__dict__ == other.__dict__ if isinstance(other, Experiment) else NotImplemented
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None  # type: ignore[assignment]  # equal by content, which has no hash
 
     @model_validator(mode="after")
     def derived(self) -> "Experiment":
