@@ -1,6 +1,7 @@
 """The house rules that a reader cannot see at a glance, read from the syntax trees: imports go down only, flags, sizes, lazy front doors."""
 
 import ast
+import functools
 import re
 import subprocess
 import sys
@@ -45,10 +46,16 @@ def room(path):
     return place.parts[0] if len(place.parts) > 1 else place.stem
 
 
+@functools.cache
+def parsed(path):
+    """Its syntax tree; five tests ask for each."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imports(path):
     """(module, whether at the top level) of every import, relative ones made absolute, `from mpm import x` as mpm.x."""
     package = ("mpm", *path.relative_to(PACKAGE).parts[:-1])
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = parsed(path)
     top = set(map(id, tree.body))
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -114,7 +121,7 @@ def calls(tree):
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_no_dangerous_flags_and_no_code_as_data(path):
     """fastmath=True would remove isnan; parallel=True would make sums depend on threads; eval and pickle have no place here; njit only in jit.py."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = parsed(path)
     for call in calls(tree):
         for keyword in call.keywords:
             assert not (keyword.arg in ("fastmath", "parallel") and isinstance(keyword.value, ast.Constant) and keyword.value.value is True)
@@ -126,7 +133,7 @@ def test_no_dangerous_flags_and_no_code_as_data(path):
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_errors_are_not_swallowed(path):
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.ExceptHandler):
             broad = node.type is None or (isinstance(node.type, ast.Name) and node.type.id in ("Exception", "BaseException"))
             assert not (broad and all(isinstance(inner, ast.Pass) for inner in node.body)), f"{path}:{node.lineno}"
@@ -136,7 +143,7 @@ def test_errors_are_not_swallowed(path):
 def test_modules_are_short_and_say_what_they_are(path):
     text = path.read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 300
-    assert not text or ast.get_docstring(ast.parse(text)), "a docstring"
+    assert not text or ast.get_docstring(parsed(path)), "a docstring"
 
 
 HEAVY = {"numba", "xarray", "scipy", "matplotlib", "pint", "h5netcdf", "h5py", "pandas", "pydantic"}
