@@ -197,8 +197,8 @@ def test_the_surrogates_indices_hold_the_exact_ones():
     assert all_.effects[0].how == "surrogate" and inside(found, CASES[0][1]).all(), found
 
 
-def test_not_reached_is_censored_and_told():
-    from mpm.sensitivity.api import analyse, sentences
+def test_not_reached_is_censored_told_and_written(tmp_path):
+    from mpm.sensitivity.api import analyse, sentences, write
 
     u = unit_sample("sobol", 512, 2, 4)
     time = 500 + 400 * u[:, 0] + 50 * u[:, 1]
@@ -210,6 +210,19 @@ def test_not_reached_is_censored_and_told():
     assert found.effects[0].spearman[0, 0] > 0.95
     assert any("never reach it; they count as at least 800 s" in text for text in sentences(found))
     assert found.unreached["time_to_centre_95_degC"][0].name == "p0"
+    share = xr.load_dataset(write(found, tmp_path / "sensitivity.nc"), engine="h5netcdf").unreached_share.sel(
+        observable="time_to_centre_95_degC", parameter="p0"
+    )
+    assert share.values == pytest.approx([late[np.clip((u[:, 0] * 3).astype(int), 0, 2) == third].mean() for third in range(3)], abs=0.02)
+
+
+def test_points_that_refinement_placed_are_no_sample():
+    from mpm.sensitivity.api import analyse, sentences
+
+    u = unit_sample("sobol", 64, 2, 4)
+    found = analyse(dataset(u, u[:, 0], config_resolved='{"sweep": {"refine": {"of": "velocity.max"}}}'))
+    assert found.effects[0].first is None and found.effects[0].spearman[0, 0] > 0.99
+    assert any("no sample of the ranges: no indices" in text for text in sentences(found))
 
 
 def test_ask_answers_with_an_interval_that_holds_the_truth_or_refuses():
