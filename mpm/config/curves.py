@@ -58,7 +58,7 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
     if not lines:
         raise Unreadable(1, "the file is empty", "a header and rows of numbers")
     if commented := [(number, line.lstrip("# ")) for number, line in enumerate(text[: lines[0][0]], 1) if line.startswith("#")]:
-        lines = lines if re.match(r"\D*[^\d\W]", lines[0][1]) else [commented[-1], *lines]  # numbers at once: the last comment is the header
+        lines = lines if re.search(r"[^\W\d_eE]", lines[0][1]) else [commented[-1], *lines]  # numbers at once: the last comment is the header
     place, names, sign = header(lines, time, value)
     head, probe = lines[place][0], is_export(lines[0][1], names)
     named, time = bool(time), time or next((name for name in names if seconds_of(name) is not None), "")
@@ -76,7 +76,7 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
         raise Unreadable(head, said, others or listed(names), "value")
     if time not in names or scale is None:
         right = [n for n in names if seconds_of(n) is not None]
-        raise Unreadable(head, f"no such column: {time!r}", right or f"a column named {'second, minute, hour'}; here are {brief(listed(names))}", "time")
+        raise Unreadable(head, f"no such column: {time!r}", right or f"a column named second, minute, hour; here are {brief(listed(names))}", "time")
     if sigma and sigma not in names:
         raise Unreadable(head, f"no such column: {sigma!r}", names, "sigma")
     for key, name in (("value", value), ("time", time), ("sigma", sigma)):
