@@ -15,7 +15,7 @@ from mpm.integrate.heat_step import Back, heat_step
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
-from mpm.state import Thermal, as_heated
+from mpm.state import Thermal
 from mpm.total.drive import present_limits, warm_references
 
 MANY = 5  # stages of a stabilised heat step that cost about as much as an implicit one
@@ -63,14 +63,14 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:
-            gained, count = heat_implicit(scene.space, as_heated(body), work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, back)
+            gained, count = heat_implicit(scene.space, scene.heated[b], work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, back)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, as_heated(body), work.rows, walls, dt, substeps, back)
+            gained = heat_chebyshev(scene.space, scene.heated[b], work.rows, walls, dt, substeps, back)
         else:
-            gained = heat_step(scene.space, as_heated(body), work.rows[:EXPLICIT_ROWS], walls, dt, substeps, back)
+            gained = heat_step(scene.space, scene.heated[b], work.rows[:EXPLICIT_ROWS], walls, dt, substeps, back)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)

@@ -17,7 +17,7 @@ from mpm.integrate.strain import PARTICLE, SPEED
 from mpm.integrate.timestep import WAVE, limits
 from mpm.lanes import aligned
 from mpm.outcome import COMPLETED, Outcome, outcome
-from mpm.state import Thermal, as_moved
+from mpm.state import Thermal
 from mpm.transfer import columns, wants_change
 
 AHEAD = 1.5  # of what the fastest particle and gravity let a particle move in a block
@@ -85,5 +85,5 @@ def push(scene, clock, work: Work, dt: float, kick: float, steps: int, ahead: fl
     elif scene.order.sliced:
         return advance_slabs(scene, method_of(scene), work.buffers, dt, kick, steps, clock.steps, reports)
     else:
-        advance(method_of(scene), as_moved(scene.bodies), work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
+        advance(method_of(scene), scene.moved, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
     return False

@@ -23,7 +23,7 @@ from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.lanes import aligned
 from mpm.outcome import UNPREPARED
-from mpm.state import PAD, Surface, Thermal, as_moved
+from mpm.state import PAD, Surface, Thermal
 from mpm.transfer import columns, wants_change
 
 SLACK = 0.15  # cells beyond which nothing acts: gaps closer than SURE are in the sweeps
@@ -178,7 +178,7 @@ class Meeting:
         grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (array[None] for array in buffers)))
         if self.drive is not None:
             self.drive.lay(time, pace.ahead, pace.steps)
-        advance_touching(method_of(scene), as_moved(scene.bodies), self.touching, grids, scene.gravity, pace, reports)
+        advance_touching(method_of(scene), scene.moved, self.touching, grids, scene.gravity, pace, reports)
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

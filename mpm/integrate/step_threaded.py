@@ -27,7 +27,6 @@ from mpm.integrate.step_parts import Moment, scratch
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SOURCED, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
-from mpm.state import as_moved
 from mpm.transfer import CHUNK, deliver, spread
 
 STILL, LATE = 0, 1
@@ -109,7 +108,7 @@ def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, times, rep
 
 def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
-    bodies, shape, boxes, starts, axis = as_moved(scene.bodies), extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
+    bodies, shape, boxes, starts, axis = scene.moved, extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
     largest = max(len(body.particles.m) for body in bodies)
     slabs = Slabs(
