@@ -35,13 +35,13 @@ CHOSEN = {  # module: (mutants, the nearest tests)
     "mpm/materials/laws.py": (10, "tests/materials/test_laws.py"),
     "mpm/materials/radial.py": (10, "tests/materials/test_return_maps.py tests/materials/test_over_lanes.py tests/implicit/test_tangents.py"),
     "mpm/materials/clipped.py": (10, "tests/materials/test_return_maps.py tests/materials/test_over_lanes.py tests/materials/test_extremes.py"),
-    "mpm/heat/exchange.py": (6, "tests/heat/test_surface.py tests/heat/test_exchange_kinds.py"),
+    "mpm/heat/exchange.py": (6, "tests/heat/test_meets.py tests/heat/test_surface.py tests/heat/test_exchange_kinds.py"),
     "mpm/heat/local.py": (8, "tests/heat/test_local.py"),
-    "mpm/heat/programmes.py": (4, "tests/heat/test_exchange_kinds.py"),
+    "mpm/heat/programmes.py": (4, "tests/heat/test_meets.py tests/heat/test_exchange_kinds.py"),
     "mpm/integrate/timestep.py": (12, "tests/integrate/test_timestep.py"),
-    "mpm/guards.py": (12, "tests/test_guards.py"),
+    "mpm/guards.py": (12, "tests/test_guarded_by_hand.py tests/test_guards.py"),
     "mpm/sweep/store.py": (10, "tests/sweep/test_store.py tests/sweep/test_batches.py"),
-    "mpm/sweep/engine.py": (12, "tests/sweep/test_engine.py tests/sweep/test_stopped.py tests/sweep/test_resources.py"),
+    "mpm/sweep/engine.py": (12, "tests/sweep/test_hands_out.py tests/sweep/test_engine.py tests/sweep/test_stopped.py tests/sweep/test_resources.py"),
     "mpm/sweep/resources.py": (6, "tests/sweep/test_resources.py"),
     "mpm/records/netcdf.py": (6, "tests/records/test_netcdf.py"),
     "mpm/config/units.py": (5, "tests/config/test_units.py tests/config/test_quantities.py"),
@@ -156,24 +156,27 @@ def keep(rows: dict[tuple, dict]) -> None:
 
 
 def study(folder: Path, path: str, picked: list, tests: str, rows: dict[tuple, dict], until: float) -> None:
-    """Run the mutants of one module that have no row, until a time."""
-    place, took = folder / path, 0.0
+    """Run the mutants of one module that have no row, until a time: over one file of tests after the other, until one fails."""
+    place, took = folder / path, {}
     source = place.read_text(encoding="utf-8")
     for key, mutant in picked:
         if key in rows or time.monotonic() > until:
             continue
-        if not took:
-            sound, took = run(folder, path, tests, 3600.0)
-            if not sound:
-                print(f"{path}: its tests ({tests}) fail without a mutant", flush=True)
-                return
-        data = source.encode()
-        place.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
-        survived, _ = run(folder, path, tests, TIMES * took + PATIENCE)
+        data, survived = source.encode(), True
+        for file in tests.split():
+            if file not in took:
+                sound, took[file] = run(folder, path, file, 3600.0)
+                if not sound:
+                    print(f"{path}: its tests ({file}) fail without a mutant", flush=True)
+                    return
+            place.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
+            survived, _ = run(folder, path, file, TIMES * took[file] + PATIENCE)
+            place.write_text(source, encoding="utf-8")
+            if not survived:
+                break
         rows[key] = dict(zip(COLUMNS, (path, mutant.line, key[1], mutant.text, key[3], "survived" if survived else "killed", ""), strict=True))
         keep(rows)
         print(f"{'SURVIVED' if survived else 'killed  '} {path}:{mutant.line}: {mutant.before} -> {mutant.text}", flush=True)
-    place.write_text(source, encoding="utf-8")
 
 
 def main() -> None:
