@@ -74,6 +74,14 @@ def test_round_off_of_a_scene_that_takes_in_no_heat_is_no_gap(off, told):
     assert bool(list(LOOKS["heat"](scene(0.0, 4.0), run))) is told  # 1 % of 2 kg times 1.5 J/(kg K) times 10 K
 
 
+@pytest.mark.parametrize(("held", "told"), [(1e-36, False), (1e-26, False), (1e-20, True), (1.0, True)])
+def test_the_round_off_of_a_body_at_rest_is_no_energy(held, told):
+    """A bar of 4 m3 and lam + 2 mu = 7 holds 7e-23 J at a strain of 1e4 round-offs."""
+    series = {"energy_kinetic": held, "energy_elastic": 0.0, "dissipation_total": 0.0, "work_loads": 0.0, "dissipation_transfer": -held, "volume_total": 4.0}
+    run = SimpleNamespace(series={name: np.array([value]) for name, value in series.items()})
+    assert bool(list(LOOKS["energy"](scene(0.0, 4.0), run))) is told
+
+
 RISING = {"table": {"time": [0, 1], "value": [0.0, 0.05]}}
 
 
