@@ -157,7 +157,7 @@ def keep(rows: dict[tuple, dict]) -> None:
 
 def study(folder: Path, path: str, picked: list, tests: str, rows: dict[tuple, dict], until: float) -> None:
     """Run the mutants of one module that have no row, until a time: over one file of tests after the other, until one fails."""
-    place, took = folder / path, {}
+    place, took = folder / path, dict[str, float]()
     source = place.read_text(encoding="utf-8")
     for key, mutant in picked:
         if key in rows or time.monotonic() > until:
