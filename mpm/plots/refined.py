@@ -26,8 +26,10 @@ def refined(view: View) -> dict[str, Any]:
 
 
 def asked(view: View) -> bool:
-    """Whether the dataset is that of two refined axes."""
-    return dataset_name(refined(view).get("of", "")) in view.root and view.design is not None and len(view.parameters) == 2
+    """Whether the dataset is that of two refined axes, and some point has the answer."""
+    name = dataset_name(refined(view).get("of", ""))
+    there = name in view.root and view.design is not None and len(view.parameters) == 2
+    return there and bool(np.isfinite(view.root[name].values[view.ok]).any())
 
 
 def plane(view: View) -> Any:

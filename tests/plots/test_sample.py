@@ -41,6 +41,15 @@ def test_few_points_give_no_bars(tree):
     assert "too few" in fig.axes[3].texts[0].get_text()
 
 
+def test_refined_axes_whose_answer_no_point_has(tree):
+    kappa, beta = np.meshgrid([0.2, 0.3, 0.5], [5.0, 10.0, 50.0])
+    config = {"output": {"observables": ["time_to.centre.95_degC"]}, "sweep": {"refine": {"of": "time_to_centre_95_degC", "level": 100.0}}}
+    finals = {"time_to_centre_95_degC": np.full(9, np.nan), "temperature_mean": 300 + kappa.ravel()}
+    fig = overview(tree({"kappa": kappa.ravel(), "beta": beta.ravel()}, finals, sample=True, config=config))
+    fig.canvas.draw()
+    assert fig.axes[0].get_xlabel() == "κ [W/m/K]"
+
+
 def test_ranks_share_ties():
     np.testing.assert_array_equal(ranks(np.array([3.0, 1, 1, 5])), [3, 1.5, 1.5, 4])
 
