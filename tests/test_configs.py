@@ -56,7 +56,8 @@ def heat_scale(experiment, run):
 
 
 SLOW = ("verification", "stability", "studies", "reduction")  # a compilation each
-SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW else []) for path in CONFIGS]
+ALONE = ("lava_cake",)  # scenes whose physics no other compiles
+SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW or path.stem in ALONE else []) for path in CONFIGS]
 
 
 @pytest.mark.parametrize("path", SHORT, ids=lambda path: str(path.relative_to(ROOT)))
