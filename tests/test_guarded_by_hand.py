@@ -70,7 +70,7 @@ def test_energy_is_judged_where_nothing_gives_any(scene, core):
 
 def test_the_energy_of_a_strain_that_is_round_off(scene):
     body, strain = scene.bodies[0], ROUNDED * np.finfo(float).eps
-    assert rounded(body) == pytest.approx(0.5 * (body.elastic.lam + 2 * body.elastic.mu) * strain**2 * float(body.particles.V0.sum()), rel=1e-12)
+    assert rounded(body) == pytest.approx(0.5 * (body.elastic.lam + 2 * body.elastic.mu) * strain**2 * float(body.particles.V0.sum()), rel=1e-12, abs=0.0)
 
 
 def test_what_is_wrong_with_the_state_is_told_before_temperatures(scene):

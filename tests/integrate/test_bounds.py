@@ -102,7 +102,7 @@ def test_a_drop_that_melts_over_a_wall(core, dimension, transfer):
         "walls": {"bottom": {"contact": {"heat": {"beta": 2000.0, "temperature": 293.15}}}}, "time": {"end": end}, "output": {"every": end / 10},
         "method": {"temperature": transfer},
     }))  # fmt: skip
-    assert run.outcome.ok and run.facts["heat_unrepaired"] == 0.0 and run.series["temperature_min"].min() < 312.0
+    assert run.outcome.ok and run.facts["heat_unrepaired"] == 0.0 and run.series["temperature_min"].min() < 313.15 - 0.5
     assert run.series["temperature_min"].min() >= 293.15 - 1e-9 and run.series["temperature_max"].max() <= 313.15 + 1e-9
 
 
