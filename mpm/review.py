@@ -128,7 +128,7 @@ def depth(experiment: Any, run: Run) -> Iterator[str]:
             continue
         seen = {body.temperature, *(float(run.series[at][-1]) for at in ("temperature_min", "temperature_max") if at in run.series)}
         kappa = max(value(law(material.heat.kappa), T) for T in seen)
-        deep = float(np.sqrt(kappa * run.times[-1] / (material.density * value(law(material.heat.alpha), body.temperature))))
+        deep = float(np.sqrt(kappa * experiment.time.end / (material.density * value(law(material.heat.alpha), body.temperature))))
         if deep < DEPTH[experiment.moving] * h * (1 - 1e-9) and (given or beta * deep > RESISTS * kappa):
             what = "what is exchanged is that" if beta else "temperatures beside its surface are those"
             yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and {what} of a layer of about a cell"

@@ -134,6 +134,18 @@ def test_a_flux_that_stays_within_a_layer_of_a_cell_is_told(kappa):
     assert run.outcome.ok and ("depth" in kinds(run.facts.get("warnings", ()))) == (kappa <= 1e-3) and (kappa <= 1e-3 or off < 0.03)
 
 
+def test_a_run_that_failed_at_once_is_not_told_that_heat_reached_nowhere():
+    """Below absolute zero before its second record."""
+    data = {
+        "grid": {"dimension": 1, "size": [0.02], "cell": 0.001}, "time": {"end": 600.0}, "output": {"every": 60.0},
+        "bodies": {"s": {"shape": {"box": {"lower": [0.005], "upper": [0.015]}}, "temperature": 293.15, "material": "d"}},
+        "materials": {"d": {"density": 1000.0, "heat": {"fourier": {"kappa": 0.5, "alpha": 2000.0}}}},
+        "surfaces": [{"of": "s", "flux": {"q": -1e5}}],
+    }  # fmt: skip
+    run = mpm.run_point(mpm.load(data))
+    assert run.outcome.kind == "max_principle" and len(run.times) == 1 and "depth" not in kinds(run.facts.get("warnings", ()))
+
+
 @pytest.mark.parametrize("D", [1, 2])
 @pytest.mark.parametrize(("gap", "told"), [(0.0, False), (0.02, False), (0.4, True), (0.95, True), (1.0, False), (3.0, False)])
 def test_bodies_that_lie_less_than_a_cell_apart_are_told(gap, told, D):
