@@ -220,7 +220,7 @@ def test_a_posterior_is_the_same_sample_each_time_and_lies_within_the_ranges(tru
 
 @pytest.mark.slow
 def test_the_posteriors_spread_is_that_of_the_covariance_where_the_model_is_nearly_linear(truth):
-    done, told = posterior(config(noisy(truth, np.random.default_rng(7), 0.2)), 600)
+    done, told = posterior(config(noisy(truth, np.random.default_rng(7), 0.2)), 1800)
     assert np.std(np.log(done.chain), axis=0) == pytest.approx(done.known.error / done.known.values, rel=0.15)
     assert np.mean(done.chain, axis=0) == pytest.approx(done.known.values, rel=0.05)
     assert np.corrcoef(np.log(done.chain).T) == pytest.approx(done.known.correlation, abs=0.03)
