@@ -1,7 +1,7 @@
 """The posterior by emcee (affine-invariant ensemble): exp(-S/(2 s^2)) within the ranges, flat in u. Every step of every walker is a point of the sweep.
 
 A third of the steps is left out as the way there. The sample is reproducible: the same seed asks for the same points, which a second run finds on disk.
-Source  Goodman and Weare (2010); Foreman-Mackey et al., PASP 125 (2013) 306. Good values: fifty times the autocorrelation, which `told` says: about 1 500 steps for three parameters.
+Source  Goodman and Weare (2010); Foreman-Mackey et al., PASP 125 (2013) 306. Good values: 50 autocorrelations (`told`): some 1 500 steps for three parameters.
 """
 
 from collections.abc import Callable
