@@ -114,3 +114,13 @@ def test_a_run_takes_one_thread_of_blas():
     with threadpool_limits(2, "blas"):
         mpm.run_point(mpm.load(point), beat=lambda *_: seen.append(counts()) and False)
         assert seen and all(one == {1} for one in seen) and counts() == {2}
+
+
+def test_compiling_ahead_is_short_where_the_end_is_a_formula(core, monkeypatch):
+    """What `warm` runs ends after a step, whatever the formulas of the config say."""
+    from mpm import runner
+
+    ran = []
+    monkeypatch.setattr(runner, "run_point", ran.append)
+    runner.warm(mpm.load(core.config(1, parameters={"end": 0.5}, time={"end": "=end"}, output={"every": 0.1})))
+    assert ran[0].time.end == ran[0].output.every < 0.1

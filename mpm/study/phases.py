@@ -112,7 +112,7 @@ class Bench:
 
 def without(experiment: Any, sections: tuple[str, ...]) -> Any:
     """The experiment less those sections of every material and what needs them, or None where that is no experiment or the same one."""
-    data, missing = experiment.resolved(), False
+    data, missing = experiment.resolved() | {"formulas": {}}, False
     for material in data["materials"].values():
         for section in sections:
             missing = missing or material.get(section) is not None
@@ -164,7 +164,7 @@ def rigid(experiment: Any) -> dict:
     unknowns = estimate(experiment).get("unknowns", 0)
     found = {"point_s": whole, "setup_s": max(0.0, whole - stepping), "steps": steps, "unknowns": unknowns, "without_s": {}, "peaks": peaks()}
     found["unknown_step_ns"] = 1e9 * stepping / max(1, steps * unknowns)
-    data = experiment.resolved()
+    data = experiment.resolved() | {"formulas": {}}
     if data["surfaces"]:
         data |= {"surfaces": [], "exact": None, "output": data["output"] | {"observables": [], "measured": {}}}
         with contextlib.suppress(ConfigError):  # a scene that is nothing without them
