@@ -72,7 +72,7 @@ def pass_part(method, body, chunk, slabs, s, b, buffers, moment, after):
         if after and late[first] == STILL:
             continue
         count = min(CHUNK, end - first)
-        if not step_chunk(method, body, chunk, here, push, part, first, count, shake, report):
+        if not step_chunk(method, body, chunk, (here, push), part, first, count, shake, report):
             return
         if moment.last:
             continue
