@@ -38,12 +38,12 @@ def plot(
 
     For example: mpm plot OUT finals --of extent_x --over eta; mpm plot OUT snapshot --of stress_mises --at 1,5.
     """
-    from mpm.plots import figures
+    from mpm.plots import KINDS, UnknownFigure, figures
 
-    names = names or ["overview"]
+    names, there = names or ["overview"], (*KINDS, "snapshot")
+    if unknown := [name for name in names if name not in there]:
+        raise UnknownFigure(f"there is no figure {unknown[0]!r}; there are {', '.join(there)}")
     if path is not None and len(names) > 1:
-        from mpm.plots import UnknownFigure
-
         raise UnknownFigure(f"one file cannot hold {len(names)} figures; leave the file out, or name one figure")
     others = [name for name in names if name != "snapshot"]
     if others:

@@ -4,7 +4,7 @@ opening   every block of steps looks at what it reads: every field finite, every
 block     before it, temperatures: above absolute zero and, where nothing heats, within their data by more than the transfer is known to overshoot (SLOPES,
           NOISE) with `method.bounds: free`, and at all without; a warning from NOTICEABLE on: FLIP's noise beside a cold surface reaches 0.29, APIC's
           slopes 0.05
-frame     every output time: `whole`; no energy from nowhere (GROWTH of the largest so far, NOISY with affine FLIP); bodies in the pieces that they began
+frame     every output time: `whole`; no energy that nothing gives (GROWTH of the largest so far, NOISY with affine FLIP); bodies in the pieces that they began
           with (integrate/fragments.py); in the total frame no body beyond a wall on which it did not lie. Where `method.frame: auto` chose that frame,
           none within AWAY of such a wall, and none strained by more than MODERATE
 explain   after a failure: which field of which particle was first, and what to do: the step against the limits that held

@@ -160,8 +160,14 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
     if experiment.method.mechanics == "implicit" and worst > 0:  # long steps damp what moves: that is what they are for
         return
     if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run):
-        said = "is lost to transfers, walls and time steps" if worst > 0 else "comes from nowhere"
+        said = "is lost to transfers, walls and time steps" if worst > 0 else "appears that no load and no heat accounts for"
         yield f"{abs(worst):.3g} {joules(experiment)}, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
+
+
+def cells(count: float) -> str:
+    """`1 cell`, `1.5 cells`."""
+    told = f"{count:.2g}"
+    return f"{told} cell{'s' if told != '1' else ''}"
 
 
 def thin(experiment: Any, run: Run) -> Iterator[str]:
@@ -171,12 +177,12 @@ def thin(experiment: Any, run: Run) -> Iterator[str]:
     for name, body in experiment.bodies.items():
         lower, upper = shape(body.shape, dimension).bounds()
         if (across := float(np.min(upper - lower)) / cell) < THIN * (1 - 1e-9):
-            yield f"{name} is {across:.2g} cells across"
+            yield f"{name} is {cells(across)} across"
             return
     across = {axis: values.min() / cell for axis, values in extents(experiment, run).items()}
     axis = min(across, key=across.get)
     if across[axis] < THIN - 1:
-        yield f"the material is down to {across[axis]:.2g} cells across along {axis}"
+        yield f"the material is down to {cells(across[axis])} along {axis}"
 
 
 def probe(experiment: Any, run: Run) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What Numba works out anew for every instruction of a kernel, worked out once: a fifth of the time that a kernel takes to compile.
+"""What Numba works out anew for every instruction of a kernel, worked out once, which saves time in compiling (`.ci/compile_times.py` measures it).
 
 Replacements of Numba's methods, installed by mpm.linking for the versions that it was tested with. They act while a kernel of ours is built and give what the
 stock method gives, so a kernel's code, and with it every bit of its results, is the same with and without them (tests/test_linking.py).

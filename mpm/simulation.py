@@ -73,14 +73,14 @@ class Scene:
     references: tuple = ()  # mpm.total.Reference by body, in the total frame; none in the updated one
     implicit: Any = None  # mpm.implicit.drive.Implicit, or None: explicit mechanics
     order: Order = field(init=False)  # of the particles, while it runs
-    moved: tuple = field(init=False)  # the bodies as the mechanical step reads them, and as the heat step does
-    heated: tuple = field(init=False)
+    for_motion: tuple = field(init=False)  # the bodies as the mechanical step reads them, and as the heat step does
+    for_heat: tuple = field(init=False)
 
     def __post_init__(self):
         self.surroundings = self.surroundings or (None,) * len(self.bodies)
         self.order = Order(self.space, self.bodies)
         self.order.due = not self.references  # those have their order for good
-        self.moved, self.heated = as_moved(self.bodies), tuple(map(as_heated, self.bodies))
+        self.for_motion, self.for_heat = as_moved(self.bodies), tuple(map(as_heated, self.bodies))
 
 
 class Clock:

@@ -63,14 +63,14 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:
-            gained, count = heat_implicit(scene.space, scene.heated[b], work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, back)
+            gained, count = heat_implicit(scene.space, scene.for_heat[b], work.rows, walls, dt, scene.heat.order, scene.heat.tolerance, back)
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
         elif kind != "explicit":
-            gained = heat_chebyshev(scene.space, scene.heated[b], work.rows, walls, dt, substeps, back)
+            gained = heat_chebyshev(scene.space, scene.for_heat[b], work.rows, walls, dt, substeps, back)
         else:
-            gained = heat_step(scene.space, scene.heated[b], work.rows[:EXPLICIT_ROWS], walls, dt, substeps, back)
+            gained = heat_step(scene.space, scene.for_heat[b], work.rows[:EXPLICIT_ROWS], walls, dt, substeps, back)
         clock.exchanged += gained
         if lost is not None:
             correct(body.thermal, *lost)

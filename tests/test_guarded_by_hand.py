@@ -8,7 +8,7 @@ import pytest
 
 from mpm import guards
 from mpm.boundary import extents
-from mpm.guards import ROUNDED, ROUNDING, Data, Guards, outgrown, rounded
+from mpm.guards import NOTICEABLE, ROUNDED, ROUNDING, Data, Guards, outgrown, rounded
 from mpm.scene.build import build
 from mpm.simulation import Clock
 from mpm.state import PAD, NoExchange, Radiation
@@ -100,3 +100,17 @@ def test_a_side_on_which_a_body_did_not_lie(scene, moderate, gaps, told, end):
     series = {f"position_{name}_x": where for name, where in at.items()} | {"strain_max": [0.0]}
     one = SimpleNamespace(space=scene.space, moderate=moderate, references=())
     assert bool(outgrown(one, series)) == told and guards.AWAY == 1.0
+
+
+@pytest.mark.parametrize("q", [1.0, -1.0])
+def test_a_flux_bounds_temperatures_on_its_other_side(core, q):
+    """What takes in heat may become as hot as it likes, but no colder than it was; its range is what it reached."""
+    body = build(core.experiment(1, surfaces=[{"of": "body", "flux": {"q": q}}])).bodies[0]
+    body.thermal.theta[:] = 0.0
+    data = Data(body, None, NOTICEABLE)
+    data.heats = False
+    body.surface.flux[:] = q
+    for beyond, fine in ((100.0, True), (-0.1, True), (-2.0, False)):
+        body.thermal.theta[:2] = q * 100.0, q * beyond
+        assert (data.judge(body) is None) == fine
+    assert data.over == pytest.approx(0.02, rel=1e-3)

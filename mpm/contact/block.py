@@ -85,5 +85,5 @@ def push(scene, clock, work: Work, dt: float, kick: float, steps: int, ahead: fl
     elif scene.order.sliced:
         return advance_slabs(scene, method_of(scene), work.buffers, dt, kick, steps, clock.steps, reports)
     else:
-        advance(method_of(scene), scene.moved, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
+        advance(method_of(scene), scene.for_motion, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
     return False

@@ -178,7 +178,7 @@ class Meeting:
         grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (array[None] for array in buffers)))
         if self.drive is not None:
             self.drive.lay(time, pace.ahead, pace.steps)
-        advance_touching(method_of(scene), scene.moved, self.touching, grids, scene.gravity, pace, reports)
+        advance_touching(method_of(scene), scene.for_motion, self.touching, grids, scene.gravity, pace, reports)
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

@@ -9,7 +9,7 @@ from mpm.records.variables import describe
 from mpm.text import amount, figure
 
 LOOSE = 0.1  # relative standard error from which parameters that move together are said not to be told apart
-CHANCE = 0.01  # what is less likely, were the model right, is no chance: so few held-out values within their 95 % band
+CHANCE = 0.01  # if the model were right, so few held-out values within their 95 % band would be less likely than this: then it is called unpredicted
 
 
 def unit(units: str) -> str:

@@ -30,13 +30,13 @@ def elastic_b(space, B, i):
 
 
 @elastic_b.register(Line)
-def _(space, B, i):
+def elastic_b_line(space, B, i):
     return float(B[i, 0]), float(B[i, 1]), float(B[i, 2]), 0.0
 
 
 @elastic_b.register(Plane)
 @elastic_b.register(Axisymmetric)
-def _(space, B, i):
+def elastic_b_plane_or_axisymmetric(space, B, i):
     return float(B[i, 0]), float(B[i, 1]), float(B[i, 2]), float(B[i, 3])
 
 
@@ -48,12 +48,12 @@ def hoop(space):
 
 @hoop.register(Line)
 @hoop.register(Plane)
-def _(space):
+def hoop_line_or_plane(space):
     return 0.0
 
 
 @hoop.register(Axisymmetric)
-def _(space):
+def hoop_axisymmetric(space):
     return 1.0
 
 

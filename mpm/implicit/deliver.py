@@ -26,13 +26,13 @@ def keep_b(space, B, i, xx, yy, zz, xy):
 
 
 @keep_b.register(Line)
-def _(space, B, i, xx, yy, zz, xy):
+def keep_b_line(space, B, i, xx, yy, zz, xy):
     B[i, 0], B[i, 1], B[i, 2] = xx, yy, zz
 
 
 @keep_b.register(Plane)
 @keep_b.register(Axisymmetric)
-def _(space, B, i, xx, yy, zz, xy):
+def keep_b_plane_or_axisymmetric(space, B, i, xx, yy, zz, xy):
     B[i, 0], B[i, 1], B[i, 2], B[i, 3] = xx, yy, zz, xy
 
 
@@ -43,12 +43,12 @@ def stretch(surface, i, A, D):
 
 
 @stretch.register(NoExchange)
-def _(surface, i, A, D):
+def stretch_no_exchange(surface, i, A, D):
     return None
 
 
 @stretch.register(Surface)
-def _(surface, i, A, D):
+def stretch_surface(surface, i, A, D):
     if surface.row[i] >= 0:
         push_forward(surface.F, surface.row[i], A, D)
 
@@ -71,12 +71,12 @@ def loads(source, body, nodes, push, dt):
 
 
 @loads.register(NoSource)
-def _(source, body, nodes, push, dt):
+def loads_no_source(source, body, nodes, push, dt):
     return None
 
 
 @loads.register(Load)
-def _(source, body, nodes, push, dt):
+def loads_load(source, body, nodes, push, dt):
     D = push.shape[1]
     for p in range(nodes.w.shape[0]):
         if not source.loaded[p]:
@@ -92,7 +92,7 @@ def _(source, body, nodes, push, dt):
 
 
 @loads.register(Given)
-def _(source, body, nodes, push, dt):
+def loads_given(source, body, nodes, push, dt):
     N = nodes.w.shape[0]
     push_at(source.force, source, body, 0, N, source.t[0] + 0.5 * dt)
     for p in range(N):
@@ -102,7 +102,7 @@ def _(source, body, nodes, push, dt):
 
 
 @loads.register(Both)
-def _(source, body, nodes, push, dt):
+def loads_both(source, body, nodes, push, dt):
     loads(source.load, body, nodes, push, dt)
     loads(source.given, body, nodes, push, dt)
 
@@ -115,17 +115,17 @@ def drag_rate(source):
 
 @drag_rate.register(NoSource)
 @drag_rate.register(Given)
-def _(source):
+def drag_rate_no_source_or_given(source):
     return 0.0
 
 
 @drag_rate.register(Load)
-def _(source):
+def drag_rate_load(source):
     return source.rate
 
 
 @drag_rate.register(Both)
-def _(source):
+def drag_rate_both(source):
     return source.load.rate
 
 
@@ -136,24 +136,24 @@ def pass_time(source, i, A, D, dt):
 
 
 @pass_time.register(NoSource)
-def _(source, i, A, D, dt):
+def pass_time_no_source(source, i, A, D, dt):
     return None
 
 
 @pass_time.register(Load)
-def _(source, i, A, D, dt):
+def pass_time_load(source, i, A, D, dt):
     source.t[i] += dt
     if source.loaded[i]:
         push_forward(source.F, i, A, D)
 
 
 @pass_time.register(Given)
-def _(source, i, A, D, dt):
+def pass_time_given(source, i, A, D, dt):
     source.t[i] += dt
 
 
 @pass_time.register(Both)
-def _(source, i, A, D, dt):
+def pass_time_both(source, i, A, D, dt):
     pass_time(source.load, i, A, D, dt)
     pass_time(source.given, i, A, D, dt)
 

@@ -108,7 +108,7 @@ def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, times, rep
 
 def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
-    bodies, shape, boxes, starts, axis = scene.moved, extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
+    bodies, shape, boxes, starts, axis = scene.for_motion, extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
     M = starts.shape[1] - 1
     largest = max(len(body.particles.m) for body in bodies)
     slabs = Slabs(

@@ -22,7 +22,7 @@ def flow_lanes_no_flow(law, trace, deviator, lam, mu, thermal, theta, J, dt):
 
 
 @tangent.register(NoFlow)
-def _(law, elastic, trace, size, thermal, theta, dt):
+def tangent_no_flow(law, elastic, trace, size, thermal, theta, dt):
     lam, mu = moduli(elastic)
     K = lam + 2.0 * mu / 3.0
     p = thermal - K * trace

@@ -146,7 +146,7 @@ def flow_lanes_ellipse_radial(law, trace, deviator, lam, mu, thermal, theta, J, 
 
 
 @tangent.register(EllipseRadial)
-def _(law, elastic, trace, size, thermal, theta, dt):
+def tangent_ellipse_radial(law, elastic, trace, size, thermal, theta, dt):
     """W = p p_tr/K + q q_tr/(3 mu) - p^2/(2 K) - q^2/(6 mu) - dt M^2/(2 eta) <s - 1>^2; the map is a proximal one, so W is convex."""
     lam, mu = moduli(elastic)
     K, M, p0, eta = lam + 2.0 * mu / 3.0, value(law.M, theta), value(law.p0, theta), value(law.eta, theta)

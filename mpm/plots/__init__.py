@@ -3,7 +3,7 @@
     overview(tree, path)           the figure that `mpm sweep` leaves beside its dataset, chosen by what the dataset holds
     figures(out, names, path)      what `mpm plot OUT [NAME...]` writes
     final(tree, of, over, ax)      one result over a swept parameter;   over_time(tree, of, ax)   series: on axes of the user's own, or on a figure of theirs
-    KINDS                          names of figures: overview, series, finals, snapshot
+    KINDS                          names of figures: overview, series, finals
 
 Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the first listed observable) over the longest axis, a line a value of the other;
                               beside it the probes' temperatures of a few points, coloured by swept value. A third axis makes a panel a value; further ones stay
@@ -34,7 +34,6 @@ Further files
 """
 
 import errno
-import importlib
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -42,7 +41,7 @@ from typing import Any
 
 from mpm.text import visible
 
-KINDS = ("overview", "series", "finals", "snapshot")
+KINDS = ("overview", "series", "finals")
 FORMATS = (".png", ".svg", ".pdf")
 DATASETS = ("sweep.nc", "run.nc")
 
@@ -117,8 +116,8 @@ def figures(
 
     names   of KINDS, one or several; the overview unless given
     path    the file of a single figure; else <folder>/<name>.png (.svg with `svg`)
-    of      the final that `finals` and the overview draw, or the field of a snapshot;  over: the swept parameter along finals
-    Raises UnknownFigure for a name, FileNotFoundError where there is no dataset, ValueError for a snapshot where none can be drawn (see mpm.movies.still).
+    of      the final that `finals` and the overview draw;  over: the swept parameter along them
+    Raises UnknownFigure for a name, FileNotFoundError where there is no dataset. Snapshots are drawn by mpm.movies.still.
     """
     wanted = [names or "overview"] if names is None or isinstance(names, str) else list(names) or ["overview"]
     for name in wanted:
@@ -129,13 +128,10 @@ def figures(
     if path is not None and Path(path).suffix.lower() not in FORMATS:
         raise UnknownFigure(f"{path}: a figure is written as {', '.join(FORMATS)}")
     dataset = dataset_of(Path(out))
-    tree, suffix = _open(dataset) if wanted != ["snapshot"] else None, ".svg" if svg else ".png"
+    tree, suffix = _open(dataset), ".svg" if svg else ".png"
     targets = [place(Path(path) if path is not None else dataset.parent / f"{name}{suffix}") for name in wanted]
     for name, target in zip(wanted, targets, strict=True):
-        if name == "snapshot":
-            importlib.import_module("mpm.movies").still(dataset, (), target, of)  # a room above this one: there is one drawing of particles and fields
-        else:
-            _finish(_draw(tree, name, of, over), target)
+        _finish(_draw(tree, name, of, over), target)
     return targets
 
 

@@ -4,6 +4,7 @@ import csv
 import subprocess
 import sys
 
+import fake_runner
 import h5py
 import numpy as np
 import pandas
@@ -35,16 +36,7 @@ def folders(core, tmp_path_factory):
 
 def fake(tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
-    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
-    config = {
-        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
-        "bodies": {"s": body},
-        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
-        "time": {"end": 10},
-        "output": {"every": 1, "probes": {"centre": [0.01]}, "snapshots": {"every": 2, "grid": ["temperature"]}},
-        "sweep": {"axes": {"kappa": [1.0, 17.0, 2.0]}},
-    }
-    return mpm.sweep(mpm.load(config), out=tmp_path / "s", jobs=0)
+    return mpm.sweep(mpm.load(fake_runner.slab({"kappa": [1.0, 17.0, 2.0]}, probes={"centre": [0.01]})), out=tmp_path / "s", jobs=0)
 
 
 def test_tensors_in_three_directions():

@@ -18,6 +18,18 @@ GROWS, GRABS, WARNS = 11.0, 12.0, 10.0
 WARNINGS = [warning("volume", "48 % of the volume is lost"), warning("temperature", "block: 7 % out of range")]
 
 
+def slab(axes, **output):
+    """Config of a slab that it pretends to run, with the temperature on the grid every 2 s."""
+    return {
+        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
+        "bodies": {"s": {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}},
+        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
+        "time": {"end": 10},
+        "output": {"every": 1, "snapshots": {"every": 2, "grid": ["temperature"]}} | output,
+        "sweep": {"axes": axes},
+    }
+
+
 def mark(text):
     """Leave a line where the test looks, if it does."""
     if folder := os.environ.get("FAKE_MARKS"):

@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import fake_runner
 import numpy as np
 import pytest
 from PIL import Image
@@ -25,16 +26,7 @@ def run(core, tmp_path):
 @pytest.fixture
 def sweep(tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
-    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
-    config = {
-        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
-        "bodies": {"s": body},
-        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
-        "time": {"end": 10},
-        "output": {"every": 1, "snapshots": {"every": 2, "grid": ["temperature"]}},
-        "sweep": {"axes": {"kappa": [1.0, 2.0, 3.0]}},
-    }
-    mpm.sweep(mpm.load(config), out=tmp_path / "s", jobs=0)
+    mpm.sweep(mpm.load(fake_runner.slab({"kappa": [1.0, 2.0, 3.0]})), out=tmp_path / "s", jobs=0)
     return tmp_path / "s"
 
 
@@ -94,8 +86,6 @@ def test_mp4(run, tmp_path):
 
 
 def test_tools_are_drawn_where_they_stand_and_leave(tmp_path, monkeypatch):
-    import fake_runner
-
     from mpm.outcome import Outcome
     from mpm.state import Run
 
@@ -127,8 +117,6 @@ def test_tools_are_drawn_where_they_stand_and_leave(tmp_path, monkeypatch):
 
 def test_points_with_grids_of_their_own_side_by_side(tmp_path, monkeypatch):
     """Two handmade points: on 11 nodes and on 6."""
-    import fake_runner
-
     before = fake_runner.run_point
 
     def run_point(experiment, beat=None, keeper=None):
@@ -138,15 +126,6 @@ def test_points_with_grids_of_their_own_side_by_side(tmp_path, monkeypatch):
 
     monkeypatch.setattr(fake_runner, "run_point", run_point)
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
-    body = {"shape": {"box": {"lower": [0], "upper": [0.05]}}, "material": "m", "temperature": 300}
-    config = {
-        "grid": {"dimension": 1, "size": [0.1], "cell": 1e-3},
-        "bodies": {"s": body},
-        "materials": {"m": {"density": 1000, "heat": {"fourier": {"kappa": 1.0, "alpha": 1000}}}},
-        "time": {"end": 10},
-        "output": {"every": 1, "snapshots": {"every": 2, "grid": ["temperature"]}},
-        "sweep": {"axes": {"grid.cell": [0.005, 0.01]}},
-    }
-    mpm.sweep(mpm.load(config), out=tmp_path / "s", jobs=0)
+    mpm.sweep(mpm.load(fake_runner.slab({"grid.cell": [0.005, 0.01]})), out=tmp_path / "s", jobs=0)
     figure = still(tmp_path / "s", ["cell=all"], of="temperature", at=[0])
     assert [len(ax.collections[0].get_offsets()) for ax in figure.axes[:2]] == [11, 6]

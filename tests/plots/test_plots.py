@@ -199,7 +199,9 @@ def test_snapshots_of_the_grid(tree, tmp_path):
     fig = still(tmp_path)
     assert [ax.get_title() for ax in fig.axes[:3]] == ["t = 0 s", "t = 1 s", "t = 2 s"]
     assert (fig.axes[0].get_xlabel(), fig.axes[0].get_ylabel(), fig.axes[3].get_ylabel()) == ("x [mm]", "y [mm]", "Temperature [°C]")
-    assert figures(tmp_path, ["overview", "snapshot"]) == [tmp_path / "overview.png", tmp_path / "snapshot.png"]
+    assert figures(tmp_path) == [tmp_path / "overview.png"]
+    with pytest.raises(UnknownFigure, match="there is no figure 'snapshot'"):
+        figures(tmp_path, "snapshot")
 
 
 def test_snapshots_of_particles(tree, tmp_path):
