@@ -105,7 +105,7 @@ FURTHER = {
 @pytest.mark.parametrize(("count", "samples", "share"), [(512, 40, 0.0), (512, 40, 0.05), (4096, 10, 0.05)])
 @pytest.mark.parametrize("name", [*NAMES, *FURTHER])
 def test_intervals_cover_as_often_as_they_say(name, count, samples, share):
-    """Random samples, no constant is fitted to any of the functions. At most 1 of 20 may lie outside on the average, and of each index 1 of 10."""
+    """Random samples, no constant is fitted to any of the functions. At most 1 of 20 may lie outside on the average, and of each index 3 of 40, or 1 of 10."""
     function, exact = dict(zip(NAMES, CASES, strict=True)).get(name) or FURTHER[name]
     hits, width = 0, 0
     for seed in range(samples):
@@ -117,7 +117,7 @@ def test_intervals_cover_as_often_as_they_say(name, count, samples, share):
         hits = hits + inside(np.stack([found.first, found.total]), exact)
         width = max(width, np.max(found.first[:, 2] - found.first[:, 1]))
     print(f"{name}, {count} points: {100 * np.mean(hits) / samples:.0f} % inside, the least {100 * np.min(hits) / samples:.0f} %, widest first {width:.3f}")
-    assert np.all(hits >= 0.9 * samples) and np.mean(hits) >= 0.95 * samples, hits / samples
+    assert np.all(hits >= int(0.925 * samples)) and np.mean(hits) >= 0.95 * samples, hits / samples
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3], ids=["whole", "30 % failed"])
