@@ -45,6 +45,7 @@ def mpm(tmp_path, monkeypatch, capsys):
 
     plots = types.ModuleType("mpm.plots")
     plots.__path__ = [str(Path(__file__).parents[2] / "mpm" / "plots")]
+    plots.KINDS, plots.UnknownFigure = ("overview", "series", "finals"), ValueError
     plots.overview = lambda tree, path: path.write_bytes(b"p")
     plots.figures = lambda out, names, path, svg: [Path(path or out / f"{name}.{'svg' if svg else 'png'}") for name in names or ["overview"]]
     monkeypatch.setitem(sys.modules, "mpm.plots", plots)
