@@ -34,6 +34,7 @@ Fails when   a temperature must stay strictly between its data: in the first ste
              a body in 3-D behind beta = inf is finer than 9 cells a radius: 200 iterations a stage instead of 5.
 
 Further files
+    side_by_side   nodes, stencils and surroundings of several bodies under one numbering
     ordered   sums of products in an order of their own
 """
 

@@ -1,8 +1,7 @@
 """Bodies that conduct into one another as one system of equations: their nodes side by side, the stencils of all in one.
 
 Every body has splines of its own on the scene's grid. A node of the box round all of them has as many unknowns as bodies share the node that most share
-(two in a stack of layers, whatever its number): number = node * most + rank of the body at the node. So few differences of numbers occur, a stencil
-holds the coupling too, and every solver serves as it is.
+(two in a stack of layers, whatever its number; mpm.rigid.side_by_side), so that a stencil holds the coupling too, and every solver serves as it is.
 """
 
 from dataclasses import dataclass
@@ -13,9 +12,8 @@ from mpm.heat.programmes import SAME
 from mpm.materials.laws import Constant
 from mpm.materials.roles import value
 from mpm.rigid.coupling import couple
-from mpm.rigid.geometry import Geometry
-from mpm.rigid.nodes import Nodes
-from mpm.rigid.surroundings import Programmes, Radiant, radiate
+from mpm.rigid.side_by_side import SideBySide, Triplets, numbers
+from mpm.rigid.surroundings import radiate
 from mpm.rigid.system import System, make_system
 
 ROUNDOFF = 1e-10  # of the heat that moves: what more is missing of a body's balance is an error, and the ledger shows it
@@ -88,109 +86,53 @@ def groups(number: int, joints) -> list[list[int]]:
     return sorted((np.flatnonzero(label == one).tolist() for one in np.unique(label)), key=lambda group: group[0])
 
 
-def stencil(rows, columns, values, diff, size: int) -> np.ndarray:
-    """Stencil (n, size) of a symmetric matrix given in full by triplets."""
-    half = columns >= rows
-    rows, columns, values = rows[half], columns[half], values[half]
-    place = np.searchsorted(diff, columns - rows) * size + rows
-    return np.bincount(place, weights=values, minlength=len(diff) * size).reshape(len(diff), size)
-
-
-def triplets(given: np.ndarray, diff: np.ndarray, into: np.ndarray):
-    """Of a body's stencil, in full, under new numbers."""
-    o, i = np.nonzero(given)
-    j = i + diff[o]
-    rows, columns, values = into[i], into[j], given[o, i]
-    off = rows != columns
-    return np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]]), np.concatenate([values, values[off]])
-
-
 def make_group(bodies, beside, joints, axisymmetric: bool, h: float, origin, end: float, moment: float = 0.0) -> Group:
     """bodies: RigidBody each; beside: shapes that touch each; joints: Joint each, by number among the bodies."""
     parts = tuple(make_system(body, axisymmetric, h, origin, end, others=others, moment=moment) for body, others in zip(bodies, beside, strict=True))
-    into, size = numbers([part.geometry for part in parts])
-    return assembled(parts, into, [b.shape for b in bodies], tuple(joints), size, axisymmetric, h, moment)
+    side = SideBySide(parts, *numbers([part.geometry for part in parts]))
+    return assembled(side, [body.shape for body in bodies], joints, axisymmetric, h, moment)
 
 
-def numbers(shaped: list[Geometry]) -> tuple[tuple[np.ndarray, ...], int]:
-    """Number of each node of each body, and how many there are."""
-    first = np.min([one.nodes.first for one in shaped], axis=0)
-    count, stride, size = np.max([one.nodes.first + one.nodes.count for one in shaped], axis=0) - first, np.zeros(3, dtype=np.int64), 1
-    for k in np.argsort(count, kind="stable"):
-        stride[k] = size
-        size *= int(count[k])
-    places = []
-    for one in shaped:
-        flat, nodes = np.arange(one.nodes.size), one.nodes
-        places.append(sum(((flat // max(nodes.stride[k], 1)) % nodes.count[k] + nodes.first[k] - first[k]) * stride[k] for k in range(3)))
-    shared, ranks = np.zeros(size, dtype=np.int64), []
-    for one, place in zip(shaped, places, strict=True):
-        ranks.append(np.where(one.active, shared[place], 0))
-        shared[place[one.active]] += 1
-    most = int(shared.max())
-    return tuple(place * most + rank for place, rank in zip(places, ranks, strict=True)), size * most
-
-
-def assembled(parts, into, shapes, joints, size: int, axisymmetric: bool, h: float, moment: float) -> Group:
-    """The Group of bodies whose nodes have their numbers."""
-    linear = all(isinstance(one, Constant) for p in parts for one in (p.kappa, p.alpha)) and not any(len(p.hot) for p in parts)
-    fixed = [isinstance(p.kappa, Constant) for p in parts]
-    conductivity = [max(value(p.kappa, p.coldest), value(p.kappa, p.hottest)) for p in parts]
-    linked = [j for j in joints if j.conductance > 0]
-    now = [k for k, j in enumerate(linked) if j.acts(moment)]
-    found = [couple(*((parts[b].geometry, conductivity[b], into[b]) for b in (j.first, j.second)), [shapes[j.first], shapes[j.second]], j.conductance,
-                    axisymmetric, h, not (fixed[j.first] and fixed[j.second])) for j in (linked[k] for k in now)]  # fmt: skip
-    diffs = [np.abs(columns - rows) for (rows, columns, _), _ in found]
-    pieces = {name: [triplets(getattr(p.geometry, name), p.geometry.nodes.diff, i) for p, i in zip(parts, into, strict=True)] for name in ("mass", "stiffness")}
-    exchange = [triplets(p.exchange, p.geometry.nodes.diff, i) for p, i in zip(parts, into, strict=True)]
-    hot = [triplets(p.hot, p.geometry.nodes.diff, i) if len(p.hot) else tuple(np.zeros((3, 0))) for p, i in zip(parts, into, strict=True)]
-    diff = np.unique(np.concatenate([*diffs, *(np.abs(c - r) for group in (*pieces.values(), exchange) for r, c, _ in group)]))
-
-    def whole(groups, factors=None):
-        scaled = [(r, c, v * f) for (r, c, v), f in zip(groups, factors or [1.0] * len(groups), strict=True)]
-        rows, columns, values = (np.concatenate(part) for part in zip(*scaled, strict=True))
-        return stencil(rows.astype(np.int64), columns.astype(np.int64), values, diff, size)
-
-    def spread(each):
-        out = np.zeros(size)
-        for values, i in zip(each, into, strict=True):
-            np.add.at(out, i, values)  # idle nodes may share a number, with nothing to add
-        return out
-
-    capacity = [p.density * p.alpha.constant for p in parts] if linear else [1.0] * len(parts)
+def assembled(side: SideBySide, shapes, joints, axisymmetric: bool, h: float, moment: float) -> Group:
+    """The Group of bodies side by side, of given `shapes`, with the `joints` that act from `moment` [s] on."""
+    parts = side.parts
+    fixed = [isinstance(part.kappa, Constant) for part in parts]
+    linear = all(fixed) and all(isinstance(part.alpha, Constant) and not len(part.hot) for part in parts)
+    capacity = [part.density * part.alpha.constant if linear else 1.0 for part in parts]
     # where all kappa are constant but some alpha is not, kappa stands in the stiffness too
-    kappas = [p.kappa.constant for p in parts] if all(fixed) else [1.0] * len(parts)
-    owner = np.full(size, len(parts))
-    for b, (p, i) in enumerate(zip(parts, into, strict=True)):
-        owner[i[p.geometry.active]] = b
-    volume = spread([c * p.geometry.volume for c, p in zip(capacity, parts, strict=True)])
-    nodes = Nodes(h, np.zeros(3), np.zeros(3, np.int64), np.array([size, 1, 1]), np.ones(3, np.int64), parts[0].geometry.nodes.local, diff, np.zeros((0, 0)))
-    index, spline = (np.concatenate([i[p.geometry.sight[0]] if k == 0 else p.geometry.sight[1] for p, i in zip(parts, into, strict=True)]) for k in (0, 1))
-    x, w = (np.concatenate([getattr(p.geometry, name) for p in parts]) for name in ("x", "w"))
-    mass, stiffness = whole(pieces["mass"], capacity), whole(pieces["stiffness"], kappas)
-    shaped = Geometry(nodes, parts[0].geometry.dimension, mass, stiffness, (), volume, (), owner < len(parts), x, w, (), (index, spline))
-    lead = max(parts, key=lambda p: p.stiff)
-    zero, facing = lead.zero, spread([p.facing for p in parts])
-    steady = spread([p.programmes.steady + (p.zero - zero) * (p.facing - sum(v for _, v in p.programmes.forcing)) for p in parts])
-    forcing, given = (tuple((programme, spread([v if q is p else np.zeros(len(q.facing)) for q in parts])) for p in parts
-                            for programme, v in getattr(p.programmes, name)) for name in ("forcing", "given"))  # fmt: skip
-    within = tuple(one._replace(index=i[one.index], size=size) for p, i in zip(parts, into, strict=True) for one in p.programmes.within)
-    skies, radiants = (), []
-    for p, i in zip(parts, into, strict=True):
-        radiants.append(p.radiant._replace(index=i[p.radiant.index], sky=p.radiant.sky + len(skies)))
-        skies += p.programmes.skies
-    radiant = Radiant(*(np.concatenate([getattr(r, name) for r in radiants]) for name in ("index", "value", "weight", "sky")), float(zero))
-    leaving = np.zeros((len(linked), size))
-    for k, (_, (number, flow)) in zip(now, found, strict=True):
+    kappas = [part.kappa.constant if all(fixed) else 1.0 for part in parts]
+    linked = tuple(joint for joint in joints if joint.conductance > 0)
+    coupled = {k: coupling(side, shapes, joint, axisymmetric, h) for k, joint in enumerate(linked) if joint.acts(moment)}
+    between, leaving = [found for found, _ in coupled.values()], np.zeros((len(linked), side.size))
+    for k, (_, (number, flow)) in coupled.items():
         np.add.at(leaving[k], number, flow)
-    joined = whole([*exchange, *(t for t, _ in found)])
-    coldest, hottest = min(p.coldest for p in parts), max(p.hottest for p in parts)
-    start, density = (spread([np.where(p.geometry.active, getattr(p, name), 0.0) for p in parts]) for name in ("start", "density"))
+    mass, stiffness = (side.triplets([getattr(part.geometry, name) for part in parts]) for name in ("mass", "stiffness"))
+    exchange = side.triplets([part.exchange for part in parts])
+    diff = np.unique(np.concatenate([np.abs(columns - rows) for rows, columns, _ in (*between, *mass, *stiffness, *exchange)]))
+    hot = side.stencil(side.triplets([part.hot for part in parts]), diff) if any(len(part.hot) for part in parts) else np.zeros((0, 0))
+    shaped = side.geometry(side.stencil(scaled(mass, capacity), diff), side.stencil(scaled(stiffness, kappas), diff), diff, capacity, h)
+    zero = max(parts, key=lambda part: part.stiff).zero
+    coldest, hottest = min(part.coldest for part in parts), max(part.hottest for part in parts)
+    start, density = (side.values([np.where(part.geometry.active, getattr(part, name), 0.0) for part in parts]) for name in ("start", "density"))
     return Group(
-        geometry=shaped, density=1.0, kappa=Constant(1.0), alpha=Constant(1.0), start=start, field=None, zero=zero, exchange=joined, facing=facing,
-        programmes=Programmes(steady, forcing, given, skies, zero, within),
-        radiant=radiant, hot=whole(hot) if any(len(p.hot) for p in parts) else np.zeros((0, 0)),
-        span=max(hottest - coldest, 1e-6 * max(abs(hottest), abs(coldest)), 1e-30), coldest=coldest, hottest=hottest, stiff=max(p.stiff for p in parts),
-        bounds=(min(p.bounds[0] for p in parts), max(p.bounds[1] for p in parts)), parts=parts, into=into, owner=owner, leaving=leaving, joints=tuple(linked),
-        density_of=density, blunt=not all(fixed),
+        geometry=shaped, density=1.0, kappa=Constant(1.0), alpha=Constant(1.0), start=start, field=None, zero=zero,
+        exchange=side.stencil([*exchange, *between], diff), facing=side.values([part.facing for part in parts]), programmes=side.programmes(zero),
+        radiant=side.radiant(zero), hot=hot, span=max(hottest - coldest, 1e-6 * max(abs(hottest), abs(coldest)), 1e-30), coldest=coldest, hottest=hottest,
+        stiff=max(part.stiff for part in parts), bounds=(min(part.bounds[0] for part in parts), max(part.bounds[1] for part in parts)), parts=parts,
+        into=side.into, owner=side.owner(), leaving=leaving, joints=linked, density_of=density, blunt=not all(fixed),
     )  # fmt: skip
+
+
+def coupling(side: SideBySide, shapes, joint: Joint, axisymmetric: bool, h: float):
+    """As mpm.rigid.coupling.couple of the two bodies of a joint."""
+    both = (joint.first, joint.second)
+    two = [side.parts[b] for b in both]
+    kappa = [max(value(part.kappa, part.coldest), value(part.kappa, part.hottest)) for part in two]
+    one, other = ((part.geometry, k, side.into[b]) for part, k, b in zip(two, kappa, both, strict=True))
+    blunt = not all(isinstance(part.kappa, Constant) for part in two)
+    return couple(one, other, [shapes[b] for b in both], joint.conductance, axisymmetric, h, blunt)
+
+
+def scaled(each: list[Triplets], factors: list[float]) -> list[Triplets]:
+    """The matrix of each body times its factor."""
+    return [(rows, columns, factor * values) for (rows, columns, values), factor in zip(each, factors, strict=True)]
