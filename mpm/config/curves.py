@@ -19,7 +19,7 @@ import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from mpm.config.headers import BRACKET, DAYS, SHORT, TIMES, Unreadable, fields, header, is_export, seconds_of, unit_of, units_of, with_units
 from mpm.config.problems import brief, listed
@@ -53,19 +53,66 @@ def content(path: Path) -> str:
 
 def read(path: Path, time: str, value: str, units: str, unit: str = "", start: Any = None, sigma: str = "") -> list[tuple[float, ...]]:
     """(second, value in `units`[, sigma]) of every row, by rising time; Unreadable for what is wrong, and where."""
-    text = content(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines = [(number, line) for number, line in enumerate(text, 1) if line.strip() and not line.startswith("#")]
+    lines = written(content(path))
+    found = columns(lines, time, value, sigma)
+    head, rows = found.head, lines[found.below :]
+    if not rows:
+        raise Unreadable(head + 1, "no rows follow the header", "a row for each measurement")
+    if len(rows) > MOST_ROWS:
+        raise Unreadable(rows[MOST_ROWS][0], f"more than {MOST_ROWS} rows", "fewer: every point of a sweep carries the curve; keep every tenth row, say")
+    probe = is_export(lines[0][1], found.names)
+    reader = RowReader(found)
+    reader.scale = 1.0 if probe and math.isnan(found.scale) else found.scale
+    reader.convert = conversion(head, found.value, units, unit or ("degC" if probe and not unit_of(found.value) else ""), "value")
+    if sigma:
+        reader.error = conversion(head, found.sigma, units, "", "sigma", unit or unit_of(found.value))
+    split = [(number, reader.whole(number, fields(number, row, found.sign))) for number, row in rows]
+    filled = [(number, row) for number, row in split if row[found.at[0]] or row[found.at[1]]]
+    if not filled:
+        raise Unreadable(head + 1, "no row has a time and a value", "a row for each measurement")
+    reader.day_first = day_first([(number, row[found.at[0]]) for number, row in filled])
+    each = [reader.numbers(number, row) for number, row in filled]
+    origin = reader.origin(start, min(second for second, *_ in each)) if reader.clock or start is not None or probe else 0.0
+    shifted = [(number, (row[0] - origin, *row[1:])) for (number, _), row in zip(filled, each, strict=True)]
+    kept = [(number, row) for number, row in shifted if row[0] >= 0 or start is None]
+    if not kept:
+        raise Unreadable(head, "no row is at the start of the run or later", "an earlier `start`", "start")
+    for number, row in kept:
+        check(number, row, units, sigma)
+    return sorted((row for _, row in kept), key=lambda row: row[0])
+
+
+def written(text: str) -> list[tuple[int, str]]:
+    """Lines with their numbers, without empty ones and comments; where numbers begin at once, the last comment above them is the header."""
+    every = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = [(number, line) for number, line in enumerate(every, 1) if line.strip() and not line.startswith("#")]
     if not lines:
         raise Unreadable(1, "the file is empty", "a header and rows of numbers")
-    if commented := [(number, line.lstrip("# ")) for number, line in enumerate(text[: lines[0][0]], 1) if line.startswith("#")]:
-        lines = lines if re.search(r"[^\W\d_eE]", lines[0][1]) else [commented[-1], *lines]  # numbers at once: the last comment is the header
+    commented = [(number, line.lstrip("# ")) for number, line in enumerate(every[: lines[0][0]], 1) if line.startswith("#")]
+    return lines if not commented or re.search(r"[^\W\d_eE]", lines[0][1]) else [commented[-1], *lines]
+
+
+class Columns(NamedTuple):
+    """What a header tells. Names of the three columns are with their units, `at` their places; no sigma: "" and None."""
+
+    head: int  # number of its line
+    below: int  # of `lines`, where rows begin
+    names: list[str]
+    sign: str  # between fields
+    time: str
+    value: str
+    sigma: str
+    at: tuple[int, int, int | None]
+    scale: float  # seconds of the time column's unit; NaN: clock times only
+
+
+def columns(lines: list[tuple[int, str]], time: str, value: str, sigma: str) -> Columns:
+    """The columns of time, value and standard error, by the names given or, where those are empty, by what the header allows."""
     place, names, sign = header(lines, time, value)
-    head, probe = lines[place][0], is_export(lines[0][1], names)
-    named, time = bool(time), time or next((name for name in names if seconds_of(name) is not None), "")
+    head, named = lines[place][0], bool(time)
     told = with_units(names, fields(*lines[place + 1], sign)) if place + 1 < len(lines) else None  # a row of units below the names
-    place, full = (place, dict(zip(names, names, strict=True))) if told is None else (place + 1, dict(zip(names, told, strict=True)))
-    if told is not None and not time:
-        time = next((name for name in names if seconds_of(full[name]) is not None), "")
+    full = dict(zip(names, told or names, strict=True))
+    time = time or timed(names, names) or timed(names, told or names)
     scale = seconds_of(full[time]) if time in names else None
     if scale is None and named and time in names:  # whoever names a column knows that it is the time
         scale = TIMES.get(unit_of(time).lower(), math.nan)
@@ -75,42 +122,30 @@ def read(path: Path, time: str, value: str, units: str, unit: str = "", start: A
         said = f"no such column: {value!r}" if value else "which column is it? Name it by `value`"
         raise Unreadable(head, said, others or listed(names), "value")
     if time not in names or scale is None:
-        right = [n for n in names if seconds_of(n) is not None]
+        right = [name for name in names if seconds_of(name) is not None]
         raise Unreadable(head, f"no such column: {time!r}", right or f"a column named second, minute, hour; here are {brief(listed(names))}", "time")
     if sigma and sigma not in names:
         raise Unreadable(head, f"no such column: {sigma!r}", names, "sigma")
     for key, name in (("value", value), ("time", time), ("sigma", sigma)):
         if name and names.count(name) > 1:
             raise Unreadable(head, f"two columns are called {name!r}", "each name once", key)
-    rows = lines[place + 1 :]
-    if not rows:
-        raise Unreadable(head + 1, "no rows follow the header", "a row for each measurement")
-    if len(rows) > MOST_ROWS:
-        raise Unreadable(rows[MOST_ROWS][0], f"more than {MOST_ROWS} rows", "fewer: every point of a sweep carries the curve; keep every tenth row, say")
-    line = Line(names, full[time], sign, names.index(time), names.index(value), names.index(sigma) if sigma else None)
-    line.scale = 1.0 if probe and math.isnan(scale) else scale
-    line.convert = conversion(head, full[value], units, unit or ("degC" if probe and not unit_of(full[value]) else ""), "value")
-    if sigma:
-        line.error = conversion(head, full[sigma], units, "", "sigma", unit or unit_of(full[value]))
-    split = [(number, line.whole(number, fields(number, row, sign))) for number, row in rows]
-    filled = [(number, row) for number, row in split if row[line.at[0]] or row[line.at[1]]]
-    if not filled:
-        raise Unreadable(head + 1, "no row has a time and a value", "a row for each measurement")
-    line.day_first = day_first([(number, row[line.at[0]]) for number, row in filled])
-    found = [line.numbers(number, row) for number, row in filled]
-    origin = line.origin(start, min(second for second, *_ in found)) if line.clock or start is not None or probe else 0.0
-    shifted = [(number, (row[0] - origin, *row[1:])) for (number, _), row in zip(filled, found, strict=True)]
-    kept = [(number, row) for number, row in shifted if row[0] >= 0 or start is None]
-    if not kept:
-        raise Unreadable(head, "no row is at the start of the run or later", "an earlier `start`", "start")
-    for number, row in kept:
-        if row[0] < 0:
-            raise Unreadable(number, "a time before the start of the run", "0 or later, or `start`: what the column shows when the run begins")
-        if units == "K" and row[1] < 0:
-            raise Unreadable(number, f"{row[1]:g} K, below absolute zero", "a temperature in the column's unit")
-        if len(row) > 2 and not row[2] > 0:
-            raise Unreadable(number, f"{sigma} is not above 0", "a standard error")
-    return sorted((row for _, row in kept), key=lambda row: row[0])
+    at = (names.index(time), names.index(value), names.index(sigma) if sigma else None)
+    return Columns(head, place + 1 + (told is not None), names, sign, full[time], full[value], full.get(sigma, ""), at, scale)
+
+
+def timed(names: list[str], full: list[str]) -> str:
+    """The first column whose name with its unit tells seconds; "" where none does."""
+    return next((name for name, told in zip(names, full, strict=True) if seconds_of(told) is not None), "")
+
+
+def check(number: int, row: tuple[float, ...], units: str, sigma: str) -> None:
+    """Refuse a time before the start, a temperature below absolute zero and a standard error that is none."""
+    if row[0] < 0:
+        raise Unreadable(number, "a time before the start of the run", "0 or later, or `start`: what the column shows when the run begins")
+    if units == "K" and row[1] < 0:
+        raise Unreadable(number, f"{row[1]:g} K, below absolute zero", "a temperature in the column's unit")
+    if len(row) > 2 and not row[2] > 0:
+        raise Unreadable(number, f"{sigma} is not above 0", "a standard error")
 
 
 def day_first(rows: list[tuple[int, str]]) -> bool:
@@ -124,17 +159,17 @@ def day_first(rows: list[tuple[int, str]]) -> bool:
     return False
 
 
-class Line:
-    """How one row becomes numbers. `time`: the name of its column with its unit."""
+class RowReader:
+    """How one row becomes numbers."""
 
     day_first = False
 
-    def __init__(self, names: list[str], full: str, sign: str, time: int, value: int, sigma: int | None):
-        self.names, self.sign, self.at = names, sign, (time, value, sigma)
+    def __init__(self, columns: Columns):
+        self.names, self.sign, self.at = columns.names, columns.sign, columns.at
         self.clock = False  # whether a clock time was seen
         self.days = 0  # of clock times without a date
         self.last: float | None = None
-        self.short = SHORT.fullmatch(unit_of(full)) is not None
+        self.short = SHORT.fullmatch(unit_of(columns.time)) is not None
         self.scale = 1.0
         self.convert: Callable[[float], float] = float
         self.error: Callable[[float], float] = float
