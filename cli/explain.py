@@ -20,7 +20,7 @@ def explain(word: Word, as_json: Json = False) -> None:
 
     from mpm_cli.listing import commands
 
-    from mpm.reference.lookup import MOST, every, find, grouped, nearest
+    from mpm.reference.lookup import MOST_SHOWN, every, find, grouped, nearest
 
     asked = " ".join(word)
     entries = every(commands())
@@ -32,6 +32,6 @@ def explain(word: Word, as_json: Json = False) -> None:
     if as_json:
         document([asdict(one) for one in found])
         return
-    say("\n\n".join(one.said() for one in found[:MOST]))
-    if len(found) > MOST:
-        say(f"\nand {len(found) - MOST} more: " + ", ".join(one.word for one in found[MOST:]))
+    say("\n\n".join(one.said() for one in found[:MOST_SHOWN]))
+    if len(found) > MOST_SHOWN:
+        say(f"\nand {len(found) - MOST_SHOWN} more: " + ", ".join(one.word for one in found[MOST_SHOWN:]))

@@ -6,11 +6,14 @@ is a link is not looked into; one beside it is made, and that is said. Imports n
 
 import atexit
 import contextlib
+import functools
 import os
+import platform
 import shutil
 import stat
 import sys
 import tempfile
+from importlib.metadata import version
 from pathlib import Path
 
 VARIABLE = "MPM_CACHE_DIR"
@@ -50,6 +53,12 @@ def private(name: str) -> Path:
             return folder
         say(f"compiled code in {folder} is not used: {why}; it is made anew beside it")
     raise OSError(f"{above} holds {TRIES - 1} folders {name} that are not this user's alone; remove them, or name another place in {VARIABLE}")
+
+
+@functools.cache
+def kernels() -> Path:
+    """The folder of the kernels that this Numba compiles for this NumPy, Python and processor."""
+    return private(f"numba-{version('numba')}-{version('numpy')}-{platform.python_version()}-{platform.machine()}")
 
 
 def shared(folder: Path) -> str:

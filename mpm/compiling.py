@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from mpm.cache import kernels
 from mpm.fingerprint import contained, digest, rooms
 
 NAMES = {
@@ -88,16 +89,10 @@ def say(listener: Callable[[str, float, float], None]) -> Iterator[None]:
         spent.heard.remove(listener)
 
 
-def folder() -> Path:
-    from mpm.jit import CACHE
-
-    return CACHE
-
-
 def met() -> dict[str, tuple[int, float]]:
     """Functions and seconds of the kernels that this machine has compiled, by name."""
     try:
-        found = json.loads((folder() / "kernels.json").read_text())
+        found = json.loads((kernels() / "kernels.json").read_text())
         return {str(name): (int(functions), float(took)) for name, (functions, took) in found.items()}
     except (OSError, ValueError, TypeError, AttributeError):
         return {}
@@ -106,7 +101,7 @@ def met() -> dict[str, tuple[int, float]]:
 def keep(kernel: str, functions: int, took: float) -> None:
     """Note what a kernel took. Two processes may lose each other's note; none may read half of one."""
     with contextlib.suppress(OSError):
-        write(folder() / "kernels.json", json.dumps(met() | {kernel: (functions, round(took, 3))}))
+        write(kernels() / "kernels.json", json.dumps(met() | {kernel: (functions, round(took, 3))}))
 
 
 def write(path: Path, text: str) -> None:
@@ -131,7 +126,7 @@ def place(config: dict) -> Path:
     words = {key: value if key == "grid" else kind(value) for key, value in config.items() if key not in UNLIKE}
     words["grid"] = words.get("grid", {}).get("dimension")
     made = hashlib.sha256(json.dumps([source, words], sort_keys=True, default=str).encode()).hexdigest()[:16]
-    return folder() / "known" / made
+    return kernels() / "known" / made
 
 
 def sort(experiment: Any) -> str:

@@ -8,11 +8,9 @@ import contextlib
 import functools
 import hashlib
 import io
-import platform
 from pathlib import Path
 
 import numba
-import numpy as np
 from numba import config, njit
 from numba.core.caching import IndexDataCacheFile
 from numba.extending import overload
@@ -29,7 +27,7 @@ FLAGS = {"fastmath": {"contract", "arcp", "nsz", "afn"}, "error_model": "numpy",
 INLINE = {"forceinline": True, "_nrt": False}
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
-CACHE = cache.private(f"numba-{numba.__version__}-{np.__version__}-{platform.python_version()}-{platform.machine()}")
+CACHE = cache.kernels()
 
 if not linking.install():
     cache.say(f"numba {numba.__version__} was not tried with mpm ({linking.tried()} were): compiling takes two to three times as long")

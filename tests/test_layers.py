@@ -27,7 +27,7 @@ LAYERS = {
     "exports": 7, "movies": 7, "reports": 8, "notebook": 9, "benchmarks": 9,
 }  # fmt: skip
 PEERS = {
-    "compiling": {"fingerprint", "jit"}, "linking": {"compiling", "shortcuts"},
+    "compiling": {"cache", "fingerprint"}, "linking": {"compiling", "shortcuts"},
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
     "scene": {"config"},  # Config -> Scene

@@ -30,7 +30,7 @@ from mpm.state import PAD, Quadratic
 
 METHODS = ("APIC", "PIC", "FLIP", "XPIC(2)")
 ROOM = {1: 9, 2: 6, 3: 5}  # nodes a direction that hold a cloud
-MOST = {1: 8, 2: 5, 3: 3}  # particles in a cloud
+MOST_PARTICLES = {1: 8, 2: 5, 3: 3}  # particles in a cloud
 
 
 @kernel
@@ -165,7 +165,7 @@ def stabilised(cloud: Cloud, method: str, dt: float, count: int) -> float:
 
 def random_cloud(rng: np.random.Generator, D: int) -> Cloud:
     """Few particles close together, many apart, pairs, jittered lattices; whole and cut volumes."""
-    kind, N = rng.integers(4), int(rng.integers(1, MOST[D] + 1))
+    kind, N = rng.integers(4), int(rng.integers(1, MOST_PARTICLES[D] + 1))
     extent = {1: 6.0, 2: 3.0, 3: 2.0}[D]
     if kind == 0:
         x = rng.uniform(0, 1, (N, D)) * rng.uniform(0.05, 1.0) * extent

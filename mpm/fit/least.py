@@ -14,7 +14,7 @@ from mpm.sweep.designs import unit_sample
 
 TOLERANCE, OF_STEP = 1e-8, 1e-2  # of u and of the sum of squares; of u where `step` says that the answer is rough, as a share of that step
 USUAL = 1e-3  # step
-MOST = 100  # evaluations of a start, without those for derivatives
+MOST_EVALUATIONS = 100  # evaluations of a start, without those for derivatives
 RESCUE = 8
 ALIKE = 1e-3  # of the range: optima that are nearer are one
 
@@ -98,5 +98,5 @@ def one(evaluator: Evaluator, start: np.ndarray) -> Search:
     if evaluator.residuals([inside])[0] is None:
         raise NoDerivative(f"{said(evaluator.problem, inside)} could not be computed")
     near = max(TOLERANCE, OF_STEP * evaluator.problem.step) if evaluator.problem.step > USUAL else TOLERANCE
-    done = least_squares(residuals, inside, evaluator.jacobian, (low, high), x_scale="jac", max_nfev=MOST, xtol=near, ftol=TOLERANCE, gtol=None)
+    done = least_squares(residuals, inside, evaluator.jacobian, (low, high), x_scale="jac", max_nfev=MOST_EVALUATIONS, xtol=near, ftol=TOLERANCE, gtol=None)
     return Search(start, done.x, float(done.cost), done.status > 0, done.message.rstrip("."), int(done.nfev))

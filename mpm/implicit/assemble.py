@@ -20,7 +20,7 @@ from mpm.materials.ellipse import SQRT6
 from mpm.state import Axisymmetric, Line, Plane
 from mpm.tensors import dilation2, eigen2, push2
 
-MOST = 0.9  # largest entry of f - 1 in a step
+LARGEST_INCREMENT = 0.9  # largest entry of f - 1 in a step
 
 
 @role
@@ -87,7 +87,7 @@ def trial(space, B, A, i):
     grow = dilation2(A)
     l1, l2, c, s = eigen2(B[0], B[1], B[3])
     largest = max(abs(A[0]), abs(A[1]), abs(A[2]), abs(A[3]), abs(A[4]))
-    sound = grow > -1.0 and min(l1, l2, B[2]) > -1.0 and largest < MOST
+    sound = grow > -1.0 and min(l1, l2, B[2]) > -1.0 and largest < LARGEST_INCREMENT
     if not sound:
         return l1, l2, c, s, 0.0, 0.0, 0.0, 0.0, 0.0, grow, False
     e1, e2, e3 = 0.5 * math.log1p(l1), 0.5 * math.log1p(l2), 0.5 * math.log1p(B[2])

@@ -7,7 +7,7 @@ C, kappa and radiation's secants are those of the step's start. The step ends wi
 the heat of the particles changes by exactly what the pieces exchanged, however loose the tolerance; an iterate's residual r
 only moves heat between nodes, by r/C.
 Mirror walls fold in the operator: ghost nodes are no unknowns. The matrix of a step is made on the nodes, and factored incompletely.
-Good values  tolerance 1e-9.   Fails when: iterations pass MOST (returned, not hidden).
+Good values  tolerance 1e-9.   Fails when: iterations pass MOST_ITERATIONS (returned, not hidden).
 """
 
 import numpy as np

@@ -19,7 +19,7 @@ from mpm.boundary import CONTACT, directions
 from mpm.jit import kernel, role
 from mpm.state import PAD, Axisymmetric, Line, Plane, Volume
 
-MOST, SHIFT = 5000, 1e-3
+MOST_ITERATIONS, SHIFT = 5000, 1e-3
 
 
 @kernel(inline=True)
@@ -256,7 +256,7 @@ def conjugate_gradients(operator, columns, between, weight, r, change, tolerance
             return -1
     change[:] = 0.0
     before = 1.0
-    for count in range(MOST):
+    for count in range(MOST_ITERATIONS):
         size, moved, rho = 0.0, 0.0, 0.0
         z[:] = r
         smooth(factor, columns, z)

@@ -17,7 +17,7 @@ from mpm.lanes import EIGHT, below, fma, least, load8, maximum, minimum, most, p
 from mpm.outcome import INVERTED, LEFT_GRID, NON_FINITE, OVERSTRETCHED
 from mpm.state import PAD, Isothermal, Thermal
 
-LEAST_J, MOST_J, MOST = 1e-3, 1e3, 1e30
+LEAST_J, MOST_J, LARGEST = 1e-3, 1e3, 1e30
 
 
 @kernel(inline=True)
@@ -72,7 +72,7 @@ def placed(space, x, first, count):
 def strained(B, first, count):
     """Whether strains are finite, and the diagonal of B above that of nothing."""
     K = B.shape[1]
-    if between(B, first * K, (first + count) * K, -1.0, MOST):
+    if between(B, first * K, (first + count) * K, -1.0, LARGEST):
         return True
     for i in range(first, first + count):
         for k in range(3):
@@ -142,9 +142,9 @@ def unsound(space, body) -> tuple[int, int, str] | None:
     p, thermal = body.particles, body.thermal
     inside, shape = room(space.basis), extents(space)
     low, high = (inside - PAD) * space.h, [(n - 1 - PAD - inside) * space.h for n in shape[: p.x.shape[1]]]
-    fields = [(p.J, LEAST_J, MOST_J), (p.B, -1.0, MOST), (p.C, -MOST, MOST), (p.v, -MOST, MOST), (p.x, low, min(high))]
+    fields = [(p.J, LEAST_J, MOST_J), (p.B, -1.0, LARGEST), (p.C, -LARGEST, LARGEST), (p.v, -LARGEST, LARGEST), (p.x, low, min(high))]
     if isinstance(thermal, Thermal):
-        fields += [(thermal.theta, -MOST, MOST), (thermal.c, -MOST, MOST)]
+        fields += [(thermal.theta, -LARGEST, LARGEST), (thermal.c, -LARGEST, LARGEST)]
     if not any(outside(values.ravel(), least, most) for values, least, most in fields):
         return None
     if isinstance(thermal, Thermal):

@@ -9,7 +9,7 @@ from mpm.outcome import INVERTED, OVERSTRETCHED
 from mpm.tensors import dilation2, dilation3, push2, push3
 
 CODE, PARTICLE, STEP, SPEED, RATE, STRAIN, SWELL, HEATED, DISSIPATED, WORKED, SWELLED, SOURCED, REPORT = range(13)  # places in the report
-MOST = 0.5  # largest entry of dt grad v
+LARGEST_INCREMENT = 0.5  # largest entry of dt grad v
 GROW, JACOBIAN, HOOP = 9, 10, 11  # rows of Chunk.e: det(1 + A) - 1, J, rate of hoop strain. The trial B begins at row 0
 
 
@@ -27,7 +27,7 @@ def guard(report, largest, grow, J, least, i):
     report[SWELL] = max(report[SWELL], J)
     if not grow > -1.0 or not least > -1.0:
         fail(report, INVERTED, i)
-    elif not largest < MOST or not 1e-3 < J < 1e3:
+    elif not largest < LARGEST_INCREMENT or not 1e-3 < J < 1e3:
         fail(report, OVERSTRETCHED, i)
 
 
@@ -100,7 +100,7 @@ def admit(particles, chunk, first, count, dt, rate, swell, good, report):
 def strain_plane(particles, chunk, first, count, dt, report):
     """Trial B in rows 0..3 of chunk.e (xx yy zz xy), GROW and J; chunk.e[HOOP] holds the rate of hoop strain."""
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
-    step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(MOST)), splat8(real(1e-3)), splat8(real(1e3))
+    step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(LARGEST_INCREMENT)), splat8(real(1e-3)), splat8(real(1e3))
     for p in range(count):
         at = 4 * (first + p)
         poke(e, p, peek(particles.B, at))
@@ -131,7 +131,7 @@ def strain_plane(particles, chunk, first, count, dt, report):
 def strain_volume(particles, chunk, first, count, dt, report):
     """Trial B in rows 0..5 of chunk.e (xx yy zz xy yz xz), GROW and J."""
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
-    step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(MOST)), splat8(real(1e-3)), splat8(real(1e3))
+    step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(LARGEST_INCREMENT)), splat8(real(1e-3)), splat8(real(1e3))
     for p in range(count):
         at = 6 * (first + p)
         poke(e, p, peek(particles.B, at))

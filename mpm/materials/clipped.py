@@ -12,7 +12,7 @@ from mpm.lanes import absolute, below, choose, exponential, like, logarithm, max
 from mpm.materials.ellipse import admissible, excess, excess_lanes, invariants, pressures, slowness, strains
 from mpm.materials.roles import aspects, flow, flow_lanes, moduli, value, values
 
-MOST = 200  # steps; 72 is the most seen
+MOST_STEPS = 200  # steps; 72 is the most seen
 FAR, FARTHEST = 1e150, 1e30  # stand for T = inf, and their inverses for T = 0, where a bracket is halved
 
 
@@ -58,12 +58,12 @@ def balance(T, P, Q, p0, omega, w1, w2):
 
 @kernel
 def tangent(P, Q, p0, omega, w1, w2):
-    """The T of a trial state outside the ellipse, 0 < P, 0 < Q, and the number of steps (MOST: failed): Newton that a bracket keeps."""
+    """The T of a trial state outside the ellipse, 0 < P, 0 < Q, and the number of steps (MOST_STEPS: failed): Newton that a bracket keeps."""
     r = P / p0
     low = math.sqrt((1.0 - r) * (1.0 + r)) / r if r < 1.0 else 0.0
     high = Q / math.sqrt((1.0 - Q) * (1.0 + Q)) if Q < 1.0 else math.inf
     T = Q / r
-    for n in range(1, MOST):
+    for n in range(1, MOST_STEPS):
         if not low < T < high:
             T = math.sqrt(max(low, 1.0 / FAR)) * math.sqrt(min(high, FAR))
         a, b, da, db, _, _, _, _, _ = balance(T, P, Q, p0, omega, w1, w2)
@@ -85,12 +85,12 @@ def tangent(P, Q, p0, omega, w1, w2):
         if abs(new - T) <= 1e-14 * T:
             return new, n
         T = new
-    return T, MOST
+    return T, MOST_STEPS
 
 
 @kernel
 def map_clipped(p_trial, q_trial, K, mu, M, p0, eta, dt):
-    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST: failed."""
+    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST_STEPS: failed."""
     P, Q, p0 = float(abs(p_trial) / M), float(q_trial / M), float(p0)
     if excess(P / p0, Q) <= 0.0:
         return p_trial, q_trial, 0.0 * p_trial, 0.0 * q_trial, 0
@@ -117,7 +117,7 @@ def strain_clipped(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
     if steps == 0:
         return e1, e2, e3, 0.0, True
     n1, n2, n3, work = strains(p, q, dp, dq, q_trial, (d1, d2, d3), K, mu, thermal)
-    if steps == MOST or not math.isfinite(float(work / M)):
+    if steps == MOST_STEPS or not math.isfinite(float(work / M)):
         return e1, e2, e3, 0.0, False
     return n1, n2, n3, work, True
 
@@ -142,7 +142,7 @@ def tangent_lanes(P, Q, p0, omega, w1, w2, active):
     low = choose(below(r, one), sqrt(absolute((1.0 - r) * (1.0 + r))) / r, nought)
     high = choose(below(Q, one), Q / sqrt(absolute((1.0 - Q) * (1.0 + Q))), like(P, FARTHEST))
     T = Q / r
-    for n in range(1, MOST):
+    for n in range(1, MOST_STEPS):
         T = choose(below(low, T) * below(T, high), T, between(low, high))
         a, b, da, db, _, _, _, _, _ = balance(T, P, Q, p0, omega, w1, w2)
         g = a - b

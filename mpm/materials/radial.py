@@ -12,7 +12,7 @@ from mpm.lanes import absolute, below, choose, like, maximum, most, precision, s
 from mpm.materials.ellipse import SQRT6, admissible, excess, excess_lanes, invariants, pressures, slowness, strains
 from mpm.materials.roles import aspects, flow, flow_lanes, moduli, tangent, value, values
 
-MOST = 60  # Newton steps; 13 is the most seen, in a million extreme states
+MOST_STEPS = 60  # Newton steps; 13 is the most seen, in a million extreme states
 
 
 class EllipseRadial(NamedTuple):
@@ -30,14 +30,14 @@ class EllipseRadial(NamedTuple):
 
 @kernel
 def overstress(a1, a2, k1, k2, x):
-    """The root g >= 0 of 1/s - 1 + g x, s^2 = (a1/(1 + k1 g))^2 + (a2/(1 + k2 g))^2 > 1 at g = 0, and the number of steps (MOST: failed).
+    """The root g >= 0 of 1/s - 1 + g x, s^2 = (a1/(1 + k1 g))^2 + (a2/(1 + k2 g))^2 > 1 at g = 0, and the number of steps (MOST_STEPS: failed).
 
     Increasing and concave in g, so that Newton from a lower bound climbs to the root without a safeguard. All arguments are numbers >= 0.
     """
     start = excess(a1, a2)
     s = math.sqrt(a1 * a1 + a2 * a2)
     g = max(0.0, (a1 - 1.0) / (k1 + a1 * x), (a2 - 1.0) / (k2 + a2 * x), start / (1.0 + s) / (max(k1, k2) + s * x))
-    for n in range(1, MOST):
+    for n in range(1, MOST_STEPS):
         u1, u2 = 1.0 + k1 * g, 1.0 + k2 * g
         b1, b2 = a1 / u1, a2 / u2
         s = math.sqrt(b1 * b1 + b2 * b2)
@@ -52,12 +52,12 @@ def overstress(a1, a2, k1, k2, x):
         g += step
         if step <= 1e-9 * g:  # quadratic: the next step would be below 1e-17
             return g, n
-    return g, MOST
+    return g, MOST_STEPS
 
 
 @kernel
 def map_radial(p_trial, q_trial, K, mu, M, p0, eta, dt):
-    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST: failed."""
+    """Mapped invariants (p, q, p_trial - p, q_trial - q, steps); the differences are exact to round-off of their own. steps = MOST_STEPS: failed."""
     a1, a2 = float(abs(p_trial) / (p0 * M)), float(q_trial / M)
     x = slowness(K, eta, dt)
     if excess(a1, a2) <= 0.0 or x == math.inf:
@@ -79,7 +79,7 @@ def strain_radial(e1, e2, e3, lam, mu, M, p0, eta, dt, thermal):
     if steps == 0:
         return e1, e2, e3, 0.0, True
     n1, n2, n3, work = strains(p, q, dp, dq, q_trial, (d1, d2, d3), K, mu, thermal)
-    if steps == MOST or not math.isfinite(float(work / M)):
+    if steps == MOST_STEPS or not math.isfinite(float(work / M)):
         return e1, e2, e3, 0.0, False
     return n1, n2, n3, work, True
 
@@ -98,7 +98,7 @@ def overstress_lanes(a1, a2, k1, k2, x, start, active):
     s = sqrt(a1 * a1 + a2 * a2)
     g = maximum(maximum((a1 - 1.0) / (k1 + a1 * x), (a2 - 1.0) / (k2 + a2 * x)), start / (1.0 + s) / (maximum(k1, k2) + s * x))
     g = maximum(g, nought)
-    for _ in range(1, MOST):
+    for _ in range(1, MOST_STEPS):
         v1, v2 = 1.0 / (1.0 + k1 * g), 1.0 / (1.0 + k2 * g)
         b1, b2 = a1 * v1, a2 * v2
         s = sqrt(b1 * b1 + b2 * b2)
@@ -169,4 +169,4 @@ def tangent_ellipse_radial(law, elastic, trace, size, thermal, theta, dt):
     W = 0.5 * p * (p_trial + (p_trial - p)) / K + 0.5 * q * (q_trial + (q_trial - q)) / (3.0 * mu) - 0.5 * x * over * over / K
     c11, c22 = (1.0 - k1 * b1 * b1 / (u1 * N)) / u1, (1.0 - k2 * b2 * b2 / (u2 * N)) / u2
     c12 = -math.copysign(p0 * k1 * b1 * b2 / (u1 * u2 * N), p)
-    return W, p, 1.0 / u2, c11, c12, c22, lost, steps < MOST and math.isfinite(lost / M)
+    return W, p, 1.0 / u2, c11, c12, c22, lost, steps < MOST_STEPS and math.isfinite(lost / M)

@@ -7,12 +7,12 @@ import numpy as np
 from mpm.plots import words
 from mpm.plots.style import INK, OKABE_ITO, QUIET, SMALL, figure, styled
 
-MOST = 6
+MOST_OBSERVABLES = 6
 
 
 def draw(found: Any) -> Any:
     """From sensitivity.nc to a figure."""
-    names, observables = list(map(str, found.parameter.values)), list(map(str, found.observable.values))[:MOST]
+    names, observables = list(map(str, found.parameter.values)), list(map(str, found.observable.values))[:MOST_OBSERVABLES]
     panels = [(f"failed, {100 * float(found.attrs['share_failed']):.0f} % of {int(found.attrs['points'])} points", found.failed.values, found.failed_p.values)]
     for k in range(len(observables)):
         title = words.wrapped(

@@ -34,7 +34,7 @@ from mpm.point.state import (
 from mpm.point.step import shares, step
 from mpm.state import NoSetting, Setting
 
-MOST = 1000.0  # automatic steps between two output times, at most: what relaxes faster is followed by its limit, which is stable
+MOST_STEPS = 1000.0  # automatic steps between two output times, at most: what relaxes faster is followed by its limit, which is stable
 LONGEST = math.log(1e3)  # |ln J| past which a point has left the model
 
 
@@ -114,7 +114,7 @@ def piece(one, program, progress, i, stage, start, end, span, scratch):
         speed = max(speed, abs(rates[k]))
     longest = program.step[i]
     if longest == 0.0:
-        longest = max(program.safety[i] * min(shares(one, speed, abs(ramp))), span / MOST)
+        longest = max(program.safety[i] * min(shares(one, speed, abs(ramp))), span / MOST_STEPS)
     count = max(1, math.ceil((end - start) / longest * (1.0 - 1e-9))) if longest < end - start else 1
     dt = (end - start) / count
     for n in range(count):

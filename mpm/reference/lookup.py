@@ -8,7 +8,7 @@ from mpm.reference import keys, results, sections
 from mpm.reference.entry import Entry
 from mpm.reference.results import VARIABLE
 
-MOST = 12  # entries shown at once
+MOST_SHOWN = 12  # entries shown at once
 
 
 def every(commands: list[Entry]) -> list[Entry]:

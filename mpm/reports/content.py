@@ -11,7 +11,7 @@ from mpm.plots.view import View
 from mpm.records.variables import STATUS
 from mpm.text import visible
 
-MOST = 12  # finals that have a column
+MOST_FINALS = 12  # finals that have a column
 OPEN = 30  # rows of a table that is shown at once; longer ones are folded
 MOMENTS = 6  # times of a series in its table
 
@@ -52,7 +52,7 @@ def varied(axis: Any, view: View) -> dict[str, Any]:
 def points(view: View) -> dict[str, Any]:
     """A row a point: swept values, status, finals in the units of the figures."""
     told = [name for name in view.finals if not view.round_off(name)]
-    names, columns, cells = (told or view.finals)[:MOST], [], []
+    names, columns, cells = (told or view.finals)[:MOST_FINALS], [], []
     shape = view.status.shape
     axes = (view.parameters if view.design is not None else view.axes) if view.dims else []
     for axis in axes:

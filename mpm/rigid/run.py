@@ -36,7 +36,7 @@ class Method:
     step: float | None = None
 
 
-NOTICEABLE, CORNERS, MOST = 0.005, 0.05, 0.5  # of the range of the data: told; an automatic method is changed for `bounded` (see `ways`); the run fails
+NOTICEABLE, CORNERS, REFUSED = 0.005, 0.05, 0.5  # of the range of the data: told; an automatic method is changed for `bounded` (see `ways`); the run fails
 EVALUATION, PIVOT = 4e-10, 1.5e-10  # s a node and stencil entry (with its share of look-ups), s a multiply-add of the factorisation: measured
 
 
@@ -100,8 +100,8 @@ def share(steps, fixed: bool) -> float:
 
 
 def limits(system: System, steps, fixed: bool, last: bool) -> tuple[float, float]:
-    """Temperatures less zero that end an attempt: MOST of the range beyond the data and absolute zero; `share` of it in one that is not the last."""
-    slack = max((MOST if last else share(steps, fixed)) * system.span, 1e-9 * system.hottest)
+    """Temperatures less zero that end an attempt: REFUSED of the range beyond the data and absolute zero; `share` of it in one that is not the last."""
+    slack = max((REFUSED if last else share(steps, fixed)) * system.span, 1e-9 * system.hottest)
     low, high = (bound - system.zero for bound in system.bounds)
     ground = -system.zero if system.bounds[0] != 0.0 else -np.inf  # data without a unit, from 1 to 0, say nothing of absolute zero
     return max(low - slack, ground), high + slack

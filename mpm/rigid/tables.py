@@ -14,7 +14,7 @@ import numpy as np
 from mpm.jit import kernel, role
 from mpm.materials.roles import enthalpy, temperature_of, value
 
-PIECES, MOST, CLOSE = 512, 1 << 14, 1e-9
+PIECES, MOST_PIECES, CLOSE = 512, 1 << 14, 1e-9
 
 
 class Table(NamedTuple):
@@ -111,7 +111,7 @@ def make_table(alpha, kappa, zero: float, coldest: float, hottest: float) -> Tab
             raise ValueError(f"alpha must be positive and kappa not negative between {coldest - margin:.6g} and {hottest + margin:.6g} K")
         tables = [_hermite(at[:, k], at[:, k + 1], step) for k in (0, 2)]
         error = max(np.abs(c[1:-1] @ [1, 0.5, 0.25, 0.125] - middle[:, k]).max() / (np.ptp(at[:, k]) or 1.0) for c, k in zip(tables, (0, 2), strict=True))
-        if error <= CLOSE or n >= MOST:
+        if error <= CLOSE or n >= MOST_PIECES:
             here = int(min(max(np.floor(-low / step), 0), n - 1)) + 1
             for c in tables:  # theta(0) = Pi(0) = 0 to the last bit: a body at rest stays at rest
                 c[:, 0] -= np.polynomial.polynomial.polyval(-low / step - (here - 1), c[here])

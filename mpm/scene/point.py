@@ -20,7 +20,7 @@ AXES = ("xx", "yy", "zz")
 PRESCRIBED = (("strain_rate", RATE), ("stretch_rate", NOMINAL), ("stress", STRESS))
 NS_STEP = 600.0  # nanoseconds a step, with two directions of prescribed stress
 LEAST_SECONDS = 0.6e-3  # of the shortest run; both fitted to `python -m mpm.benchmarks.costs`
-MOST = 2**25  # numbers in the record of one compiled call: 256 MB
+MOST_NUMBERS = 2**25  # numbers in the record of one compiled call: 256 MB
 
 
 @dataclass
@@ -67,8 +67,8 @@ def batch(experiments, exacts=None) -> list[Run]:
 
 
 def parts(members: list[int], rows: list[int]) -> list[list[int]]:
-    """Members in calls whose records stay below MOST numbers."""
-    cut = np.cumsum(rows) * 20 // MOST
+    """Members in calls whose records stay below MOST_NUMBERS."""
+    cut = np.cumsum(rows) * 20 // MOST_NUMBERS
     return [[members[k] for k in np.flatnonzero(cut == c)] for c in np.unique(cut)]
 
 
@@ -190,7 +190,7 @@ def exchanges(surface) -> list[tuple[float, float]]:
 def estimate(experiment) -> dict:
     """Size, limits and cost of one point, without running it: the automatic step at the start, at most 1000 an output interval."""
     from mpm.point.step import shares
-    from mpm.point.time_loop import MOST as LEAST
+    from mpm.point.time_loop import MOST_STEPS
 
     one = spot(experiment)
     plain = getattr(shares, "py_func", shares)  # nothing is compiled for a plan
@@ -199,7 +199,7 @@ def estimate(experiment) -> dict:
     found = dict(zip(("relaxation", "yield strain", "temperature", "time constant"), plain(one.laws, speed, 0.0), strict=True))
     found = {name: float(limit) for name, limit in found.items() if math.isfinite(limit)}
     every = min(experiment.output.every, experiment.time.end)
-    step = one.step or max(one.safety * min(found.values(), default=math.inf), every / LEAST)
+    step = one.step or max(one.safety * min(found.values(), default=math.inf), every / MOST_STEPS)
     steps = math.ceil(experiment.time.end / min(step, every) * (1 - 1e-9))
     return {
         "particles": 1,

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FOLDS, DEGREE, LEVELS, MOST, LEAST, GROUPS = 10, 16, 20, 300, 0.005, 20
+FOLDS, DEGREE, LEVELS, MOST_FUNCTIONS, LEAST, GROUPS = 10, 16, 20, 300, 0.005, 20
 NORMS, PARTS, PENALTIES = (0.4, 0.7, 1.0), (0.1, 0.25, 0.5), (1e-4, 1e-2, 0.1)
 
 
@@ -70,7 +70,7 @@ def chosen(unit: np.ndarray, y: np.ndarray) -> Basis:
     single = [polynomials(column) for column in unit.T]
     best: tuple[float, Basis] | None = None
     for q, part in itertools.product(NORMS, PARTS):
-        degrees = candidates([one.shape[1] - 1 for one in single], q, min(MOST, int(part * len(y))))
+        degrees = candidates([one.shape[1] - 1 for one in single], q, min(MOST_FUNCTIONS, int(part * len(y))))
         phi = np.hstack([np.ones((len(y), 1)), np.prod([one[:, degrees[:, k]] for k, one in enumerate(single)], axis=0)])
         gram, by, cost = phi.T @ phi, phi.T @ y, np.concatenate([[0], (degrees.astype(float) ** 2).sum(axis=1)])
         for strength in PENALTIES:

@@ -10,7 +10,7 @@ import math
 
 BATCH = 0.25  # s; also about what a kill can cost
 GROW = 4
-MOST = 128  # points
+MOST_POINTS = 128  # points
 
 
 class BatchSize:
@@ -28,5 +28,5 @@ class BatchSize:
 
     def batch(self, left: int, workers: int) -> int:
         """Points for the next task, of those that are left."""
-        size = min(int(BATCH / self.seconds), GROW * self.last, MOST, math.ceil(left / (2 * max(1, workers))))
+        size = min(int(BATCH / self.seconds), GROW * self.last, MOST_POINTS, math.ceil(left / (2 * max(1, workers))))
         return max(1, size)

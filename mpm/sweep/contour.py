@@ -15,7 +15,7 @@ SURE = 0.35  # of `until`: what a triangle may be off by in the middle; elsewher
 STEP = 1e-4  # of the ranges, for slopes
 DIGITS = 4
 FAR = (1.0, 2.0, 4.0, 8.0, np.inf)  # times the median distance from the level, from which values grow as their logarithm
-MOST = 1000  # points of one set of functions
+MOST_POINTS = 1000  # points of one set of functions
 
 
 def follow(places: np.ndarray, values: np.ndarray, level: float, until: float) -> np.ndarray:
@@ -43,7 +43,7 @@ def follow(places: np.ndarray, values: np.ndarray, level: float, until: float) -
     if not crossings:
         return np.empty((0, 2))
     at, along = np.array(crossings), np.array(sides)
-    smooth = RBFInterpolator(places, tamed(places, values), kernel="cubic", degree=1, neighbors=100 if len(places) > MOST else None)
+    smooth = RBFInterpolator(places, tamed(places, values), kernel="cubic", degree=1, neighbors=100 if len(places) > MOST_POINTS else None)
     slope = np.stack([smooth(at + STEP * axis) - smooth(at - STEP * axis) for axis in np.eye(2)], axis=1) / (2 * STEP)
     on_side = along.any(axis=1)
     slope[on_side] = along[on_side] * np.sum(along * slope, axis=1)[on_side, None]
@@ -65,7 +65,7 @@ def tamed(places: np.ndarray, values: np.ndarray) -> np.ndarray:
     median = np.median(size[size > 0])
     far = np.minimum(np.array(FAR) * median, size.max())[:, None]
     ways = np.where(size <= far, values, np.sign(values) * far * (1 + np.log(np.maximum(size, far) / far)))
-    near = np.argsort(size, kind="stable")[:MOST]
+    near = np.argsort(size, kind="stable")[:MOST_POINTS]
     x = places[near]
     flat = np.hstack([np.ones((len(x), 1)), x])
     matrix = np.block([[np.linalg.norm(x[:, None] - x, axis=2) ** 3, flat], [flat.T, np.zeros((3, 3))]])

@@ -23,7 +23,7 @@ from mpm.sweep.queue import EXIT, Points, counts
 from mpm.sweep.report import Reporter
 from mpm.sweep.store import Store
 
-MOST = 10**6
+MOST_RUNS = 10**6
 
 
 class Stopped(Exception):
@@ -106,7 +106,7 @@ class Rounds:
         if self.stopped:
             raise Stopped(self.stopped)
         experiment = self.sweep(points)
-        plan = plan_of(experiment, max_runs=MOST)
+        plan = plan_of(experiment, max_runs=MOST_RUNS)
         if not self.asked:
             self.store.claim(experiment, swept_paths(plan), self.options.smoke, take_over=self.options.rerun in ("stale", "all"), kind="sweep", join=True)
         ids = [case.run_id for case in plan.cases]
@@ -167,7 +167,7 @@ class Rounds:
         from mpm.sweep.collect import collect
 
         experiment = self.all()
-        plan = plan_of(experiment, max_runs=MOST)
+        plan = plan_of(experiment, max_runs=MOST_RUNS)
         self.store.claim(experiment, swept_paths(plan), self.options.smoke, take_over=False)
         points = Points.of(plan)
         lines, _ = self.store.lines(points.ids)

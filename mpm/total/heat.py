@@ -25,7 +25,7 @@ from mpm.total.reference import gradients_at
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
 GAMMA = 1.0 - math.sqrt(0.5)
-MOST = 1000  # iterations
+MOST_ITERATIONS = 1000  # iterations
 
 
 class NoWarmth(NamedTuple):
@@ -244,7 +244,7 @@ def solve(space, X, K, warmth, met, dt, T, tolerance, vectors, work):
         p[i] = weight[i] * r[i]
         size += p[i] * r[i]
     first_size = size
-    for count in range(MOST):
+    for count in range(MOST_ITERATIONS):
         if not size > tolerance * tolerance * first_size:
             for i in active:
                 T[i] += change[i]

@@ -16,7 +16,7 @@ import numpy as np
 from mpm.verification.setup import at_rest, elastic_only, only_body
 
 ORDER, ORDERS = None, {"total": 1.2}
-ELEMENTS, STEPS, MOST = 6, 6, 400  # elements over the height; load steps; elements along
+ELEMENTS, STEPS, MOST_ELEMENTS = 6, 6, 400  # elements over the height; load steps; elements along
 SMALL = 1e-6
 
 
@@ -49,7 +49,7 @@ class Mesh:
 
     def __init__(self, length: float, height: float):
         self.ny = ELEMENTS
-        self.nx = min(MOST, max(ELEMENTS, round(ELEMENTS * length / height)))
+        self.nx = min(MOST_ELEMENTS, max(ELEMENTS, round(ELEMENTS * length / height)))
         self.half = np.array([length / self.nx / 2, height / self.ny / 2])
         self.columns = 2 * self.ny + 1
         first = (2 * np.arange(self.nx)[:, None] * self.columns + 2 * np.arange(self.ny)).ravel()

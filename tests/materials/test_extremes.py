@@ -7,9 +7,9 @@ import pytest
 from states import states
 
 from mpm.jit import kernel
-from mpm.materials.clipped import MOST as MOST_CLIPPED
+from mpm.materials.clipped import MOST_STEPS as MOST_CLIPPED
 from mpm.materials.clipped import map_clipped
-from mpm.materials.radial import MOST as MOST_RADIAL
+from mpm.materials.radial import MOST_STEPS as MOST_RADIAL
 from mpm.materials.radial import map_radial
 
 

@@ -8,7 +8,7 @@ from mpm.config import load
 from mpm.records.point import Record
 from mpm.sweep import batch_size
 from mpm.sweep.api import execute, tree_of
-from mpm.sweep.batch_size import MOST, BatchSize
+from mpm.sweep.batch_size import MOST_POINTS, BatchSize
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
 from mpm.sweep.store import Store
@@ -63,7 +63,7 @@ def test_sizes_follow_the_pace():
     now.heard(0.002, 4)
     assert now.batch(1000, 2) == 16
     now.heard(0.01, 64)
-    assert now.batch(1000, 2) == MOST and now.batch(20, 2) == 5 and now.batch(1, 2) == 1
+    assert now.batch(1000, 2) == MOST_POINTS and now.batch(20, 2) == 5 and now.batch(1, 2) == 1
     now.heard(10.0, 1)
     assert now.batch(1000, 2) == 1
 
