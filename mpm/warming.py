@@ -59,7 +59,7 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
             return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
         clock.exchanged, clock.iterations, implicit = clock.exchanged + gained, clock.iterations + count, True
     for b, (body, walls, (lost, between)) in enumerate(zip(scene.bodies, mirrors, before, strict=True)):
-        back = Back(scene.blend, 1.0 if between is not None and needs_slopes(scene, body) else scene.affine)
+        back = Back(scene.blend, 1.0 if needs_slopes(scene, body, between is not None) else scene.affine)
         if b in joined:
             gained, between = 0.0, between and tuple(pick(before[c][1][k] for c in joined) for k, pick in enumerate((min, max)))
         elif implicit:

@@ -19,6 +19,7 @@ KINDS = {
     "step": "a `time.step` of which `output.every`, snapshots and heat steps are whole numbers",
     "depth": "smaller cells, a longer run, or leave the exchange out where hardly anything is conducted",
     "near": "let them meet for heat to pass, or take cells smaller than the gap",
+    "late": "a longer `time.end`, or an earlier `from`",
 }
 
 

@@ -82,24 +82,30 @@ def test_the_round_off_of_a_body_at_rest_is_no_energy(held, told):
     assert bool(list(LOOKS["energy"](scene(0.0, 4.0), run))) is told
 
 
-RISING = {"table": {"time": [0, 1], "value": [0.0, 0.05]}}
+@pytest.mark.parametrize(
+    ("transfer", "steps", "told"), [("pic", 100, True), ("pic", 1, False), ({"flip": {"blend": 0.5}}, 100, True), ("flip", 100, False), ("apic", 100, False),
+                                    ({"xpic": {"order": 1}}, 100, True), ("xpic", 100, False)]
+)  # fmt: skip
+def test_what_conducts_by_itself_is_told(transfer, steps, told):
+    """PIC adds R0 alpha h^2/(4 dt): 2.3 to a kappa of 3 in steps of 0.02 s, 0.02 in one of 2 s, and nothing where all is at one temperature."""
+    series = {"temperature_min": [300.0], "temperature_max": [350.0], "heat_total": [1.0], "heat_exchanged": [1.0], "heat_ledger": [0.0]}
+    run = SimpleNamespace(series={name: np.array(values) for name, values in series.items()}, facts={"heat_steps": steps})
+    materials = {"solid": SOLID | {"heat": {"fourier": {"kappa": 3.0, "alpha": 1.5}}}}
+    found = list(LOOKS["heat"](scene(0.0, 4.0, method={"temperature": transfer}, materials=materials), run))
+    assert [("conducts 2.3 W" in text or "conducts 1.2 W" in text) for text in found] == [True] * told
+    run.series["temperature_max"] = run.series["temperature_min"]
+    assert not list(LOOKS["heat"](scene(0.0, 4.0, method={"temperature": transfer}, materials=materials), run))
 
 
 @pytest.mark.parametrize(
-    ("transfer", "beta", "told"), [("xpic", "inf", True), ("xpic", 0.05, True), ("xpic", RISING, True), ("xpic", 0.03, False), ("apic", "inf", False)]
-)
-def test_xpic_behind_a_surface_that_exchanges_heat_is_told(transfer, beta, told):
-    """It is off by 1.6 % of the fall at 64 cells behind beta = inf, and no ledger shows it; a tenth of kappa / h is 0.04 here."""
-    sides = [{"of": "bar", "side": "right", "convection": {"beta": beta, "outside": 350.0}}]
-    series = {"temperature_min": [300.0], "temperature_max": [350.0], "heat_total": [1.0], "heat_exchanged": [1.0], "heat_ledger": [0.0]}
-    run = SimpleNamespace(series={name: np.array(values) for name, values in series.items()})
-    experiment = scene(0.0, 4.0, surfaces=sides, method={"temperature": transfer})
-    assert ["xpic" in text for text in LOOKS["heat"](experiment, run)] == [True] * told
-    wall = {"left": {"stick": {"heat": {"beta": 0.5, "temperature": 350.0}}}}
-    experiment = scene(0.0, 4.0, walls=(), method={"temperature": transfer}).model_copy(update={"walls": scene(0.0, 4.0).walls})
-    assert not list(LOOKS["heat"](experiment, run))
-    data = experiment.resolved() | {"walls": wall}
-    assert len(list(LOOKS["heat"](mpm.load(data), run))) == (transfer == "xpic")
+    ("changes", "where"), [({"surfaces": [{"of": "bar", "from": 2.0, "flux": {"q": 1.0}}]}, "surfaces.0"),
+                           ({"sources": [{"of": "bar", "from": 3.0, "heat": 1.0}]}, "sources.0"),
+                           ({"tools": {"press": {"from": 2.5, "shape": {"box": {"lower": [5.0], "upper": [6.0]}}}}}, "tools.press"),
+                           ({"surfaces": [{"of": "bar", "from": 1.9, "flux": {"q": 1.0}}]}, None)]
+)  # fmt: skip
+def test_what_begins_after_the_end_is_told(changes, where):
+    found = list(LOOKS["late"](scene(0.0, 4.0, **changes), None))
+    assert [text.split()[0] for text in found] == ([where] if where else [])
 
 
 @pytest.mark.parametrize("kappa", [0.05, 5e-3, 2e-3, 5e-4, 1e-5, 1e-30])
@@ -170,7 +176,7 @@ def test_a_probe_whose_particle_is_gone(core):
 
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):

@@ -235,6 +235,8 @@ def read(text: str, origin: Origin) -> tuple[Node | None, list[Problem]]:
 def read_file(path: Path, shown: str) -> tuple[Node | None, list[Problem], str]:
     """Nodes, problems and text of a file; all that can go wrong with opening it is a problem too."""
     origin = Origin(shown)
+    if path.is_fifo() and path.parts[:2] not in (("/", "dev"), ("/", "proc")):  # a shell's own pipes are there, and have a writer
+        return None, [origin.problem(0, 0, "", "cannot read the file: it is a pipe, which may never end", allowed="a file")], ""
     try:
         with path.open("rb") as stream:
             raw = stream.read(MOST_BYTES + 1)

@@ -60,7 +60,7 @@ class AffineFlip(Kind):
 
 
 class Xpic(Kind):
-    """FLIP cleaned of what the grid cannot see, by extra transfers."""
+    """FLIP cleaned of what the grid cannot see, by extra transfers; of temperature with APIC's slopes in bodies that exchange heat."""
 
     kind: ClassVar[str] = "xpic"
     order: Annotated[int, Whole("order", 1, 16)] = doc(2, description="order; 1 is PIC, each further one costs a transfer to the grid and back")

@@ -134,7 +134,7 @@ class Meeting:
         """The heat step of all bodies that `links` join: see conduct_together; and which they are. walls: mirrors of each body's temperature."""
         if self.scratch is None:
             self.scratch = np.zeros((len(self.bodies), FIELDS, math.prod(extents(self.space))))
-        which, method = np.unique(links.body), (scene.heat.order, scene.heat.tolerance, Back(scene.blend, scene.affine))
+        which, method = np.unique(links.body), (scene.heat.order, scene.heat.tolerance, Back(scene.blend, 1.0 if scene.sharp else scene.affine))
         done = conduct_together(self.space, scene.bodies, which, self.scratch, walls, links, dt, *method)
         self.passed += books.passed(links, done[1], len(self.bodies))
         return which, done

@@ -7,14 +7,14 @@ and what they have no room for goes to all particles, by their room. Heat is cou
 It is the default (`method.bounds: free` does without), as it costs APIC neither order nor time. Measured, with it, and without where that differs:
     configs/verification/robin_slab_particles.yaml, n = 16, 32, 64: APIC 8.58e-4, 2.04e-4, 4.57e-5 (Bi = 10), 7.43e-4, 1.68e-4, 4.66e-5 (beta = inf). Behind
     beta = inf affine FLIP 6.80e-4, 2.20e-4, 1.86e-4, without 6.73e-4, 2.19e-4, 1.94e-4; FLIP 1.9e-3, 9.4e-4, 6.1e-4, without 1.6e-2, 6.2e-3, 2.4e-3;
-    XPIC 4.3e-2, 2.5e-2, 1.6e-2, without 3.3e-2, 1.6e-2, 8.2e-3
-FLIP and XPIC carry no slopes, so nodes outside a surface read the particles inside, too warm by O(h d theta/dn), and the grid meets the temperature that a side
+    XPIC 9.7e-4, 2.4e-4, 6.0e-5 (Bi = 10), 8.7e-4, 2.1e-4, 5.4e-5 (beta = inf)
+FLIP carries no slopes, so nodes outside a surface read the particles inside, too warm by O(h d theta/dn), and the grid meets the temperature that a side
 is held at only while particles beside it lie beyond the bound by as much. To bring those back at every step is an exchange that no law asks for (FLIP
-1.7e-2 at n = 64). So beside such a side (`needs_slopes`) FLIP keeps slopes while it is repaired; XPIC cannot, as its extra transfers grow with them.
+1.7e-2 at n = 64). So beside such a side (`needs_slopes`) FLIP keeps slopes while it is repaired; XPIC keeps them beside every surface (integrate/xpic.py).
     slump.yaml, beta = 2000: without it 3.1 % of the range below its start; beta = 5000, kappa = 0.1, alpha = 4000: 10 %; 0.61 s of processor, without 0.62 s
 A box of three cells, 2-D, Bi_h = 10: APIC passes the bounds by 8 % without, FLIP by 51 %.
 Good values  with APIC and affine FLIP.
-Fails when   XPIC cools behind a large beta (above), or FLIP through the touch of another body; the body as a whole has left the bounds (none of its particles
+Fails when   FLIP cools through the touch of another body; the body as a whole has left the bounds (none of its particles
              has room): then the rest stays where it was, and the result says `heat_unrepaired`.
 """
 
@@ -29,7 +29,7 @@ from mpm.integrate.heat_step import reach
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.materials.laws import enthalpy
-from mpm.state import NoExchange, Radiation
+from mpm.state import NoExchange, Radiation, Thermal
 from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
 
 FIELDS = 2  # scratch
@@ -52,11 +52,14 @@ def bounds_of(body, seen: np.ndarray) -> tuple[float, float]:
     return -math.inf if surface.flux.min(initial=0.0) < 0 else low, math.inf if surface.flux.max(initial=0.0) > 0 else high
 
 
-def needs_slopes(scene, body) -> bool:
-    """Whether FLIP is to keep slopes: where a side all but holds its surface at the temperature outside, beta h > kappa."""
-    if scene.blend == 1 or scene.sharp or isinstance(body.surface, NoExchange):
+def needs_slopes(scene, body, repaired: bool) -> bool:
+    """Whether a transfer that has none is to keep slopes: XPIC beside any surface; FLIP, where repaired, beside a side that all but holds its surface at
+    the temperature outside, beta h > kappa."""
+    if scene.blend == 1 or isinstance(body.surface, NoExchange) or not isinstance(body.thermal, Thermal):
         return False
-    return float(body.surface.beta.max(initial=0.0)) * scene.space.h > conductance(body.thermal)[0]
+    if scene.sharp:
+        return True
+    return repaired and float(body.surface.beta.max(initial=0.0)) * scene.space.h > conductance(body.thermal)[0]
 
 
 def keep_between(space, body, nodes, walls, low: float, high: float) -> tuple[float, float]:

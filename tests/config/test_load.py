@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import pickle
 
 import pytest
@@ -222,3 +223,9 @@ def test_models_are_frozen(loaf):
 
 def test_an_experiment_without_load(loaf):
     assert Experiment.model_validate(loaf).run_id == load(loaf).run_id
+
+
+def test_a_named_pipe_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.yaml")
+    with pytest.raises(ConfigError, match="it is a pipe"):
+        load(tmp_path / "pipe.yaml")
