@@ -110,6 +110,8 @@ def exchanged(experiment: Any, name: str) -> float:
 def conducted(experiment: Any, run: Run) -> Iterator[str]:
     """Bodies whose temperatures PIC smooths as a conductivity would, by transfers at every heat step."""
     kind, steps = experiment.method.temperature, run.facts.get("heat_steps", 0)
+    if not steps or not experiment.moving or experiment.grid.dimension == 0:
+        return
     blend = {"pic": 1.0, "flip": getattr(kind, "blend", 0.0), "xpic": float(getattr(kind, "order", 2) == 1)}.get(kind.kind, 0.0)
     share = blend * experiment.grid.cell**2 * steps / (4 * experiment.time.end)
     for name, body in experiment.bodies.items():

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import mpm
+from mpm.boundary import KINDS
 from mpm.config import ConfigError, boundary, laws, loads
 from mpm.config.programmes import Sine, TimeTable
 from mpm.heat.exchange import STEFAN_BOLTZMANN
@@ -110,6 +111,7 @@ def test_load(core, kind, solver):
 def test_tables_hold_the_whole_menu():
     assert set(menus.EXCHANGE) == set(boundary.EXCHANGES) == set(EXCHANGES)
     assert set(menus.LOAD) == set(loads.LOADS)
+    assert {wall.acts for wall in boundary.WALLS} == set(KINDS)
     assert set(PROGRAMMES) == set(scaling.MOMENTS) == {TimeTable.kind, Sine.kind} == set(PROGRAMME)
     kinds = {one.kind: one for one in vars(laws).values() if isinstance(one, type) and issubclass(one, laws.Kind) and hasattr(one, "kind")}
     assert set(law.LAW) == set(kinds)
@@ -124,8 +126,8 @@ def test_a_kind_of_the_menu_alone_is_refused_by_name(core, monkeypatch):
     monkeypatch.setattr(boundary, "EXCHANGES", (*boundary.EXCHANGES, "mist"))
     monkeypatch.setattr(loads, "LOADS", (*loads.LOADS, "wind"))
     entry = SimpleNamespace(**dict.fromkeys(EXCHANGES), mist=1.0, wind=1.0, traction=None, drag=None)
-    for look in (lambda: menus.acting(entry), lambda: acts_of(entry, np.arange(3)), lambda: menus.pulling([entry])):
-        with pytest.raises(SceneError, match=r"mist|wind"):
+    for look in (lambda: menus.acting(entry), lambda: acts_of(entry, np.arange(3)), lambda: menus.pulling([entry]), lambda: menus.wall_kind("glue")):
+        with pytest.raises(SceneError, match=r"mist|wind|glue"):
             look()
     with pytest.raises(SceneError, match="law 'hail' is not known here; what is: constant"):
         law.law(type("Hail", (), {"kind": "hail"})())

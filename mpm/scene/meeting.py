@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mpm.boundary import CONTACT, KINDS
+from mpm.boundary import CONTACT
 from mpm.contact.found import BODY
 from mpm.contact.meeting import Meeting
 from mpm.contact.skin import POINT
+from mpm.scene.menus import wall_kind
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.scene.tools import refuse_tools
@@ -49,10 +50,11 @@ def plan_meetings(experiment, sides) -> Meets:
     for number, side in enumerate(sides):
         axis, upper, named = number // 2, number % 2, experiment.walls.get(side)
         acts = named.acts if named is not None else "slip"
+        kind = wall_kind(acts)
         for b, (low, high) in enumerate(boxes):
             gap = (grid.size[axis] - high[axis] if upper else low[axis]) / grid.cell
             if side == "axis" or (acts != "contact" and gap <= AT):
-                walls[b, axis, upper] = KINDS[acts]
+                walls[b, axis, upper] = kind
             elif acts == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
                 stops[b, axis, upper] = named.friction if named is not None else 0.0
     fields = np.zeros(B, np.int64)

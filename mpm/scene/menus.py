@@ -1,11 +1,12 @@
 """What the kinds of a menu of the config are to solvers: one table a family. A kind that its table does not know is refused by name, never left out.
 
-acting(entry)     exchange of one surface entry          pulling(entries)   loads of one body
+acting(entry)     exchange of one surface entry          pulling(entries)   loads of one body          wall_kind(acts)   a wall of the domain
 To add an exchange or a load: a line in its table, and what is new about it in the solvers that `Part.role` names.
 """
 
 from typing import Any, NamedTuple
 
+from mpm.boundary import KINDS
 from mpm.config import boundary
 from mpm.config import loads as config_loads
 from mpm.scene.refusal import SceneError
@@ -28,7 +29,7 @@ EXCHANGE = {
 LOAD = ("traction", "drag")
 
 
-SECTION = {"exchange": "surfaces", "programme": "surfaces", "load": "loads", "law": "materials"}  # of the config, by family
+SECTION = {"exchange": "surfaces", "wall": "walls", "programme": "surfaces", "load": "loads", "law": "materials"}  # of the config, by family
 
 
 def known(table: Any, kind: str, family: str) -> Any:
@@ -36,6 +37,11 @@ def known(table: Any, kind: str, family: str) -> Any:
     if kind not in table:
         raise SceneError((SECTION[family],), f"{family} {kind!r} is not known here; what is: {', '.join(table)}")
     return table[kind]
+
+
+def wall_kind(acts: str) -> int:
+    """The number of a wall (mpm.boundary.KINDS) by how it acts."""
+    return known(KINDS, acts, "wall")
 
 
 def acting(entry, role: str = "") -> list[Part]:

@@ -5,14 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mpm.boundary import CONTACT, KINDS, STICK, directions, extents
+from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
 from mpm.materials import NoFlow, value
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import exchanging_surface
 from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
-from mpm.scene.menus import pulling
+from mpm.scene.menus import pulling, wall_kind
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
@@ -30,10 +30,10 @@ FLUSH = 1e-9  # of the domain
 
 def wall_kinds(experiment) -> np.ndarray:
     """(3, 2) kinds; slip where the config says nothing, and on the axis."""
-    kinds = np.full((3, 2), KINDS["slip"])
+    kinds = np.full((3, 2), wall_kind("slip"))
     for number, side in enumerate(SIDES[experiment.grid.dimension]):
         if side in experiment.walls:
-            kinds[number // 2, number % 2] = KINDS[experiment.walls[side].acts]
+            kinds[number // 2, number % 2] = wall_kind(experiment.walls[side].acts)
     return kinds
 
 
