@@ -85,7 +85,10 @@ def figures(made: Shown, experiment: object) -> None:
     if made.config.parent.name != "scenes":
         made.mpm("plot", str(made.out), "overview")
         return
-    swept = experiment.sweep is not None
+    from mpm.opened import Results
+
+    with Results(made.out) as found:
+        swept = found.view.status.size > 1
     made.mpm("plot", str(made.out), "overview", "series", *(("finals",) if swept else ()))
     if experiment.output.snapshots is not None:
         made.mpm("plot", str(made.out), "snapshot")

@@ -88,7 +88,7 @@ class Results:
             return Point({}, "", "", Shots(self, {}))
         view = self.view
         words = view.named(at)
-        plain = [f"{axis.name.rsplit('.', 1)[-1]}={axis.text(at[axis.dim])}" for axis in view.axes]
+        plain = [f"{axis.name.rsplit('.', 1)[-1]}={axis.text(at[axis.dim])}" for axis in view.own]
         stem = re.sub(r"[^A-Za-z0-9_.+=-]+", "_", "-".join(plain) if view.design is None else "-".join([*plain, f"{view.design}={at[view.design]}"]))
         return Point(at, visible(", ".join(words)), stem, Shots(self, at))
 

@@ -98,13 +98,9 @@ def over_time(tree: Any, of: str | Iterable[str] | None = None, ax: Any = None) 
         raise UnknownFigure(f"there is no series {', '.join(map(repr, unknown))}; there are {', '.join(there) or 'none'}")
     if not names:
         raise UnknownFigure("the dataset holds no series")
-    along = view.parameters[0] if view.design is not None and view.parameters else None
-    if along is None and view.axes:
-        x, lines, _ = layouts.arrange(view)
-        along = lines or x
     with styled():
         ax = figure(view.title, 4.8).add_subplot() if ax is None else ax
-        series.panel(ax, view, names, along, dict(view.chosen))
+        series.panel(ax, view, names, layouts.along(view), dict(view.chosen))
         settle([ax])
     return ax.figure
 
@@ -187,8 +183,13 @@ def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) 
     from mpm.plots import layouts
     from mpm.plots.style import settle
 
-    kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals}
-    fig = kinds[name](_viewed(tree, of, over))
+    kinds, view = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals}, _viewed(tree, of, over)
+    if name == "finals" and not view.axes and not view.sampled:
+        raise UnknownFigure("finals are drawn over what a sweep varies, and this is one point: `mpm plot OUT series` draws it over time; its numbers are what"
+                            " `mpm run` prints, and `mpm export OUT --to numbers.csv` writes")  # fmt: skip
+    if view.ok.any() and not (view.finals if name == "finals" else view.series_names() if name == "series" else True):
+        raise UnknownFigure(f"the dataset holds no {name} with a number")
+    fig = kinds[name](view)
     settle(fig.axes)
     return fig
 

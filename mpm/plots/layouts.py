@@ -6,20 +6,21 @@ from typing import Any
 import numpy as np
 
 from mpm.plots import finals, series, words
-from mpm.plots.style import INK, QUIET, empty, figure, styled
+from mpm.plots.sample import FEWEST, chief, scatter
+from mpm.plots.style import INK, QUIET, figure, styled
 from mpm.plots.view import Axis, View, spread
 
 
 def overview(view: View) -> Any:
     """The figure that answers the question of the dataset, by what is in it."""
+    from mpm.plots import refined
+
     with styled():
         if not view.ok.any():
             return nothing(view)
-        if view.design is not None:
-            from mpm.plots import refined, sample
-
-            return noted(refined.plane(view) if refined.asked(view) else sample.scatter(view), view)
-        return noted(swept(view) if view.axes and view.finals else families(view, None), view)
+        if view.sampled and chief(view):
+            return noted(refined.plane(view) if refined.asked(view) else scatter(view), view)
+        return noted(swept(view) if view.axes and view.finals else families(view, along(view)), view)
 
 
 def noted(fig: Any, view: View) -> Any:
@@ -27,6 +28,8 @@ def noted(fig: Any, view: View) -> Any:
     told = [f"{words.title_case(words.short(view.long_name(name)))}: not reached{' by any point' if view.status.size > 1 else ''}" for name in view.unreached]
     if view.status.size == 1 and view.warned.any():
         told.append(view.warnings_told())
+    if view.sampled and view.ok.sum() < FEWEST:
+        told.append(f"{words.counted(int(view.ok.sum()), 'point')} ok: too few for rank correlations")
     if told:
         fig.supxlabel("\n".join(told), x=0.012, ha="left", color=QUIET, fontsize=9)
     return fig
@@ -34,20 +37,42 @@ def noted(fig: Any, view: View) -> Any:
 
 def nothing(view: View) -> Any:
     """No point is ok: say so, and why."""
-    fig = figure(view.title, 1.8 + 0.24 * min(len(view.counted_reasons()), 9))
-    ax = fig.add_subplot()
-    ax.set_axis_off()
     reasons, points = view.counted_reasons(), view.status.size
     head = f"None of {words.counted(points, 'point')} is ok." if points > 1 else "The point is not ok."
     if set(reasons) <= {"pending"}:
         head = "No point has run yet."
-    ax.text(0.0, 0.95, head, fontsize=13, color=INK, transform=ax.transAxes, va="top")
     rows = [f"{count} ×  {text}" for text, count in list(reasons.items())[:8]]
     if len(reasons) > 8:
         rows.append(f"and {len(reasons) - 8} other reasons")
+    return stated(view, head, rows)
+
+
+def numbers(view: View) -> Any:
+    """Results of points over which nothing can be drawn."""
+    rows, at = [], tuple(view.chosen.values())
+    for name in view.finals[:8]:
+        scale = view.scale(name)
+        rows.append(f"{view.label(name, '')}: {words.number(float(scale(view.root[name].values[at])))} {scale.units}".rstrip())
+    return stated(view, f"{view.ok.sum()} of {words.counted(view.ok.size, 'point')} ok.", rows or ["No result or series has a number."])
+
+
+def stated(view: View, head: str, rows: list[str]) -> Any:
+    """Words in place of a figure."""
+    fig = figure(view.title, 1.8 + 0.24 * len(rows))
+    ax = fig.add_subplot()
+    ax.set_axis_off()
+    ax.text(0.0, 0.95, head, fontsize=13, color=INK, transform=ax.transAxes, va="top")
     under: dict[str, Any] = {"xycoords": "axes fraction", "xytext": (0, -30), "textcoords": "offset points"}
     ax.annotate("\n".join(rows), (0.0, 0.95), fontsize=10.5, color=QUIET, va="top", linespacing=1.6, **under)
     return fig
+
+
+def along(view: View) -> Axis | None:
+    """The axis that colours tell in figures of series; None of a single point."""
+    if view.sampled:
+        return view.parameters[0]
+    x, lines, _ = arrange(view) if view.axes else (None, None, [])
+    return lines or x
 
 
 def arrange(view: View, name: str = "") -> tuple[Axis, Axis | None, list[Axis]]:
@@ -106,19 +131,14 @@ def share(axes: Any) -> None:
 def all_series(view: View) -> Any:
     """Every family of series: of one point, or of a few along the axis that colours tell."""
     with styled():
-        if not view.series_names():
-            return nothing(view) if not view.ok.any() else empty(view, "The dataset holds no series.")
-        if view.design is not None:
-            return families(view, view.parameters[0] if view.parameters else None)
-        x, lines, _ = arrange(view) if view.axes else (None, None, [])
-        return families(view, lines or x)
+        return families(view, along(view)) if view.series_names() else nothing(view)
 
 
 def families(view: View, lines: Axis | None) -> Any:
     """A panel a family of series, six at most."""
     groups = view.families()[:6]
     if not groups:
-        return empty(view, "The dataset holds no series.")
+        return numbers(view)
     columns = 1 if len(groups) == 1 else 2 if len(groups) in (2, 4) else 3
     rows = math.ceil(len(groups) / columns)
     fig = figure(view.title, 4.8 if rows == 1 else 3.9 * rows)
@@ -138,18 +158,15 @@ def families(view: View, lines: Axis | None) -> Any:
 
 
 def all_finals(view: View) -> Any:
-    """Up to six finals over the first axis."""
+    """Up to six finals over the first axis: those that vary."""
     with styled():
         if not view.ok.any():
             return nothing(view)
-        if view.design is not None:
-            from mpm.plots.sample import scatter
-
+        if view.sampled:
             return scatter(view, most=1 if view.wanted else 6)
-        if not view.axes or not view.finals:
-            return empty(view, "One point: its finals are numbers, not a figure (mpm run prints them).")
         x, lines, _ = arrange(view)
-        names = [view.wanted] if view.wanted else [name for name in view.finals if name != "heat_ledger"][:6]
+        told = [name for name in view.finals if not (view.constant(name) or view.round_off(name))] or view.finals
+        names = [view.wanted] if view.wanted else told[:6]
         columns = min(3, len(names))
         rows = math.ceil(len(names) / columns)
         fig = figure(view.title, 4.6 if rows == 1 else 3.9 * rows)

@@ -15,7 +15,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from mpm.plots import series, words
 from mpm.plots.finals import until, wide
-from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, empty, figure, plain_ticks
+from mpm.plots.style import INK, MARKS, OKABE_ITO, QUIET, figure, plain_ticks
 from mpm.plots.view import Axis, View
 
 FEWEST = 10
@@ -29,15 +29,14 @@ def scatter(view: View, most: int = 3) -> Any:
     """Small multiples: a row an observable, a column a parameter, rank correlations at the end of the row."""
     parameters = view.parameters[:MOST_PARAMETERS]
     names = chief(view)[:most]
-    if not parameters or not names:
-        return empty(view, "The sample varies no number." if not parameters else "No result has a value.")
     columns, order = len(parameters), view.dims
     blocks = [spread_over(view, axis) for axis in parameters]
     curves = [name for name in view.series_names() if view.measured(name) is not None][:4]
     below = 3.9 if curves else 0.0
     fig = figure(view.title, 1.1 + 2.35 * len(names) + below)
     upper, lower = fig.subfigures(2, 1, squeeze=False, height_ratios=[1.1 + 2.35 * len(names), below])[:, 0] if curves else (fig, fig)
-    grid = upper.subplots(len(names), columns + 1, squeeze=False, sharey=False, width_ratios=[1.0] * columns + [1.25])
+    enough = int(view.ok.sum() >= FEWEST)
+    grid = upper.subplots(len(names), columns + enough, squeeze=False, sharey=False, width_ratios=[1.0] * columns + [1.25] * enough)
     bad = view.reasons.astype(bool)
     for i, name in enumerate(names):
         values = np.asarray(view.root[name].transpose(*order).values, dtype=float)
@@ -55,7 +54,8 @@ def scatter(view: View, most: int = 3) -> Any:
         for ax in grid[i, 1:columns]:
             ax.sharey(grid[i, 0])
             ax.tick_params(labelleft=False)
-        bars(grid[i, columns], view, parameters, blocks, values, title=i == 0, last=i == len(names) - 1)
+        if enough:
+            bars(grid[i, columns], view, parameters, blocks, values, title=i == 0, last=i == len(names) - 1)
     failures(upper, view, [name for name in names if (view.ok & ~np.isfinite(view.root[name].transpose(*order).values)).any()])
     upper.align_ylabels(grid[:, 0])
     if curves:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from mpm.plots import words
 from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, heading, legend_below
@@ -133,7 +134,8 @@ def levels(ax: Any, view: View, name: str) -> None:
     for _, celsius in view.thresholds(name):
         ax.axhline(celsius, color=QUIET, lw=0.8, ls=(0, (1, 2)), zorder=1)
         at = {"xycoords": ("axes fraction", "data"), "xytext": (4, 3), "textcoords": "offset points"}
-        ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), color=QUIET, fontsize=8.5, **at)
+        text = ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), color=QUIET, fontsize=8.5, zorder=6, **at)
+        text.set_path_effects([withStroke(linewidth=3, foreground="white")])  # lines may pass behind it
 
 
 def crossings(ax: Any, view: View, name: str, at: dict[str, int], clock: words.Scale, colour: Any) -> None:

@@ -12,7 +12,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.lines import Line2D
 
+from mpm.plots import words
 from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, figure, plain_ticks, styled
+from mpm.records.variables import describe
 
 WITHIN, BEYOND = OKABE_ITO[0], OKABE_ITO[1]
 COLUMNS = 4
@@ -81,7 +83,7 @@ class Figure:
         """What the shades of the marks mean."""
         bar = fig.colorbar(ScalarMappable(self.norm, RATES), ax=axes, location="right", shrink=0.8, aspect=40, pad=0.01)
         plain_ticks(bar.ax.yaxis)
-        said = f"growth of {self.root.attrs['growth_of']} where it failed, 1/{self.root.attrs['per']}"
+        said = f"growth of {words.short(describe(self.root.attrs['growth_of']).long_name)} where it failed, 1/{self.root.attrs['per']}"
         bar.set_label(f"{said}\n(darkest: faster, or ended before it could be told)", fontsize=8)
         bar.outline.set_visible(False)
 

@@ -201,12 +201,3 @@ def save(fig: Figure, path: Path | str) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
-
-
-def empty(view: Any, text: str) -> Any:
-    """A figure that says why it shows nothing."""
-    fig = figure(view.title, 2.4)
-    ax = fig.add_subplot()
-    ax.set_axis_off()
-    ax.text(0.0, 0.8, text, color=QUIET, fontsize=11, transform=ax.transAxes, va="top")
-    return fig

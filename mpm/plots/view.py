@@ -45,9 +45,23 @@ class View:
         return f"{title} (smoke run: coarse and short)" if str(self.root.attrs.get("smoke", "")).lower() in ("true", "1") else title
 
     @cached_property
-    def axes(self) -> list[Axis]:
+    def own(self) -> list[Axis]:
         """Swept dimensions with values of their own, more than one value each."""
         return [Axis.of(self.root[dim], dim) for dim in self.dims if dim in self.root.coords and self.sizes[dim] > 1]
+
+    @cached_property
+    def axes(self) -> list[Axis]:
+        """Along what figures are drawn: swept dimensions, and a list of points that differ in words only."""
+        return self.own if self.design is None or self.sampled else [*self.own, self.listing()]
+
+    def listing(self) -> Axis:
+        """A list of points as kinds: what differs in words, else the number of the point."""
+        rows = [axis for axis in self.parameters if axis.dim == self.design]
+        if len(rows) == 1:
+            return rows[0]
+        texts = [", ".join(each) for each in zip(*(axis.values for axis in rows), strict=True)] or [str(i) for i in range(self.sizes[self.design])]
+        name = str(self.design)
+        return Axis(name, name, np.array(texts, dtype=object), words.title_case(name), name, "", False, True, np.arange(len(texts), dtype=float))
 
     @cached_property
     def design(self) -> str | None:
@@ -56,10 +70,16 @@ class View:
 
     @cached_property
     def parameters(self) -> list[Axis]:
-        """What a sample varies, then the axes beside it."""
-        rows = [row for name, row in self.root.coords.items() if row.dims == (self.design,) and row.dtype.kind in "fiu"]
-        rows = [row for row in rows if len(np.unique(row.values)) > 1 and not self.follows.intersection((str(row.name), row.attrs.get("config_path", "")))]
-        return [Axis.of(row, str(self.design), self.drawn_in_logarithm(row)) for row in rows] + [axis for axis in self.axes if not axis.category]
+        """What a sample varies, numbers or else words, then the axes beside it."""
+        rows = [row for row in self.root.coords.values() if row.dims == (self.design,) and len(np.unique(row.values)) > 1]
+        rows = [row for row in rows if not self.follows.intersection((str(row.name), row.attrs.get("config_path", "")))]
+        drawn = [row for row in rows if row.dtype.kind in "fiu"] or rows
+        return [Axis.of(row, str(self.design), self.drawn_in_logarithm(row)) for row in drawn] + [axis for axis in self.own if not axis.category]
+
+    @property
+    def sampled(self) -> bool:
+        """Whether a sample or a list of points varies a number."""
+        return any(axis.dim == self.design and not axis.category for axis in self.parameters)
 
     @cached_property
     def follows(self) -> set[str]:
@@ -68,10 +88,9 @@ class View:
         return {*((self.config.get("sweep") or {}).get("derive") or {}), *formulas, *(path.removesuffix(".value") for path in formulas)}
 
     def named(self, at: dict[str, int]) -> list[str]:
-        """A point by its values: what the axes say, and of a sample what its parameters are; its number where they are words."""
+        """A point by its values: what the axes say, and of a sample what its parameters are."""
         words = [axis.says(at[axis.dim]) for axis in self.axes]
-        drawn = [axis.says(at[axis.dim]) for axis in self.parameters if axis.dim == self.design] if self.design is not None else []
-        return [*words, *(drawn or ([f"{self.design} {at[self.design]}"] if self.design is not None else []))]
+        return [*words, *(axis.says(at[axis.dim]) for axis in self.parameters if self.sampled and axis.dim == self.design)]
 
     @cached_property
     def status(self) -> np.ndarray:
@@ -241,8 +260,8 @@ class View:
         return bool(np.ptp(values) > max(1e-6 * np.abs(values).max(), 1e-9 * self.largest(units), 1e-6 * (units == "Pa")))
 
     def families(self) -> list[list[str]]:
-        """Series that share a panel: of one family and one unit, as energies or temperatures do."""
+        """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are zero throughout, if others are not."""
         found: dict[tuple[str, str], list[str]] = {}
         for name in self.series_names():
             found.setdefault((name.split("_")[0], self.series[name].attrs.get("units", "1")), []).append(name)
-        return list(found.values())
+        return [names for names in found.values() if any(np.nan_to_num(self.series[name].values).any() for name in names)] or list(found.values())

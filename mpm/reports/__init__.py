@@ -72,7 +72,7 @@ def figures(found: Results) -> list[dict[str, Any]]:
     view, made = found.view, []
     varied = " and ".join(axis.name for axis in view.axes) or view.design or "nothing"
     kinds = [("overview", f"Overview: {', '.join(view.long_name(name) for name in view.finals[:2]) or 'no result'}, over {varied}.")]
-    if view.axes or view.design:
+    if (view.axes or view.design) and (view.series_names() or not view.ok.any()):
         kinds.append(("series", f"Over time: {', '.join(view.long_name(name) for name in view.series_names()[:3]) or 'nothing'}, of a few points."))
     if found.points()[0].shots.times.size:
         kinds.append(("snapshot", "Snapshots of the point that stands for the sweep."))

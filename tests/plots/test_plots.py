@@ -152,18 +152,36 @@ def test_what_no_point_reached_is_told_under_the_figure(tree):
     said = "Time for centre to reach 95 °C: not reached"
     series = np.array([time, time]) + 300
     assert f"{said} by any point" in texts(overview(tree({"kappa": [0.1, 0.2]}, finals, {"temperature_mean": series}, time=time)))
-    assert f"{said} by any point" in texts(overview(tree({"kappa": [0.1, 0.2]}, finals, {"temperature_mean": series}, time=time, sample=True)))
+    drawn = texts(overview(tree({"kappa": [0.1, 0.2]}, finals, {"temperature_mean": series}, time=time, sample=True)))
+    assert f"{said} by any point\n2 points ok: too few for rank correlations" in drawn
     one = {"temperature_mean": 300.0, "time_to_centre_95_degC": np.nan}
     assert said in texts(overview(tree({}, one, {"temperature_mean": time + 300}, time=time)))
 
 
-@pytest.mark.parametrize("kind", ["overview", "series", "finals"])
-def test_every_kind_is_made_of_every_shape(tree, loaf, kind):
+def test_every_kind_is_made_of_every_shape_that_has_it(tree, loaf):
+    """What cannot be drawn is an error with advice, not a picture of words; an overview tells its numbers."""
     one = tree({"kappa": [0.1]}, {"temperature_mean": [300.0]})
     bare = tree({}, {"temperature_mean": 300.0})
     empty = tree({"kappa": [0.1, 0.2]}, {"time_to_centre_95_degC": [np.nan, np.nan]})
     for each in (one, bare, empty, loaf):
-        assert _draw(each, kind).get_suptitle() == "A title"
+        assert _draw(each, "overview").get_suptitle() == "A title"
+    assert "Mean temperature: 26.9 °C" in texts(_draw(bare, "overview"))
+    assert any("not reached by any point" in text for text in texts(_draw(empty, "overview")))
+    for kind in ("series", "finals"):
+        assert _draw(loaf, kind).get_suptitle() == "A title"
+        for each in (one, bare, empty):
+            with pytest.raises(UnknownFigure, match="one point" if kind == "finals" and each is not empty else "no (series|finals) with a number"):
+                _draw(each, kind)
+
+
+def test_a_list_of_points_that_differ_in_words(tree):
+    """Once a picture that said `The sample varies no number.`"""
+    made = tree({"transfer": np.array(["apic", "flip", "pic"])}, {"temperature_mean": [300.0, 301.0, 302.0]}, sample=True)
+    axes = overview(made).axes
+    assert [label.get_text() for label in axes[0].get_xticklabels()] == ["apic", "flip", "pic"]
+    assert axes[0].lines[0].get_linestyle() == "None"  # kinds have no order: no line joins them
+    same = tree({"kappa": np.full(2, 0.1)}, {"temperature_mean": [300.0, 300.0]}, sample=True)
+    assert [label.get_text() for label in overview(same).axes[0].get_xticklabels()] == ["0", "1"]
 
 
 def test_figures_of_a_folder(loaf, tmp_path):
