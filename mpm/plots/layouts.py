@@ -115,8 +115,10 @@ def swept(view: View) -> Any:
 
 
 def series_of(view: View) -> list[str]:
-    """The series that the overview shows: probes' temperatures, else the first family."""
+    """The series that the overview shows: the first family that it is asked for, else probes' temperatures, else the first family."""
     there = view.series_names()
+    if asked := [name for name in view.asked if view.series is not None and name in view.series and "time" in view.series[name].dims]:
+        return [name for name in asked if view.kin(name) == view.kin(asked[0])][:4]
     probes = [name for name in view.probes if name in there]
     return probes[:4] or (view.families()[0][:4] if there else [])
 

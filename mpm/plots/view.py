@@ -145,16 +145,20 @@ class View:
         ]
 
     @property
+    def asked(self) -> list[str]:
+        """Dataset names of what the config wants in the overview."""
+        return [dataset_name(name) for name in (self.config.get("output") or {}).get("overview") or []]
+
+    @property
     def finals(self) -> list[str]:
         """Finals with a number somewhere, the most interesting first: errors, times, what the config lists, probes, the rest."""
         names = [str(name) for name, row in self.root.data_vars.items() if name not in BOOKKEEPING and row.dims == self.dims and row.dtype.kind in "fiu"]
         there = [name for name in names if np.isfinite(self.root[name].values).any()]
-        asked = [dataset_name(name) for name in (self.config.get("output") or {}).get("overview") or []]
         refined = ((self.config.get("sweep") or {}).get("refine") or {}).get("of", "")
-        first = [*filter(None, [self.wanted, dataset_name(refined)]), *asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
+        first = [*filter(None, [self.wanted, dataset_name(refined)]), *self.asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
         wanted = [*first, *self.listed, *self.probes, *there]
         found = [name for name in dict.fromkeys(wanted) if name in there]
-        return sorted(found, key=lambda name: name != self.wanted and name not in asked and (self.round_off(name) or self.constant(name)))
+        return sorted(found, key=lambda name: name != self.wanted and name not in self.asked and (self.round_off(name) or self.constant(name)))
 
     @property
     def unreached(self) -> list[str]:
@@ -259,9 +263,13 @@ class View:
         values, units = self.series[name].values[np.isfinite(self.series[name].values)], self.series[name].attrs.get("units", "1")
         return bool(np.ptp(values) > max(1e-6 * np.abs(values).max(), 1e-9 * self.largest(units), 1e-6 * (units == "Pa")))
 
+    def kin(self, name: str) -> tuple[str, str]:
+        """Family and unit of a series."""
+        return name.split("_", maxsplit=1)[0], self.series[name].attrs.get("units", "1")
+
     def families(self) -> list[list[str]]:
         """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are zero throughout, if others are not."""
         found: dict[tuple[str, str], list[str]] = {}
         for name in self.series_names():
-            found.setdefault((name.split("_")[0], self.series[name].attrs.get("units", "1")), []).append(name)
+            found.setdefault(self.kin(name), []).append(name)
         return [names for names in found.values() if any(np.nan_to_num(self.series[name].values).any() for name in names)] or list(found.values())

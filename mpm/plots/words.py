@@ -108,7 +108,7 @@ def numbers(values: Iterable[Any]) -> list[str]:
 def symbol(name: str) -> str:
     """The letter of a parameter, from its short name or its path; empty where it has none."""
     word = name.rsplit(".", 1)[-1]
-    return SYMBOLS.get(word, word if len(word) <= 2 else "")
+    return SYMBOLS.get(word, word if re.fullmatch(r"[A-Za-z]\d?", word) else "")  # M or k0, but no zz
 
 
 def short(long_name: str) -> str:

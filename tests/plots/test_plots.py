@@ -174,6 +174,14 @@ def test_every_kind_is_made_of_every_shape_that_has_it(tree, loaf):
                 _draw(each, kind)
 
 
+def test_the_overview_shows_the_series_that_it_is_asked_for(tree):
+    time = np.linspace(0, 10, 5)
+    series = {"temperature_mean": time[None] + [[300.0], [310.0]], "extent_x": time[None] * [[1e-3], [2e-3]]}
+    config = {"output": {"overview": ["extent_x", "temperature_mean"]}}
+    made = tree({"kappa": [0.1, 0.2]}, {"temperature_mean": [310.0, 320.0], "extent_x": [0.01, 0.02]}, series, time=time, config=config)
+    assert [ax.get_ylabel() for ax in overview(made).axes] == ["Extent of the material along x [mm]"] * 2
+
+
 def test_a_list_of_points_that_differ_in_words(tree):
     """Once a picture that said `The sample varies no number.`"""
     made = tree({"transfer": np.array(["apic", "flip", "pic"])}, {"temperature_mean": [300.0, 301.0, 302.0]}, sample=True)
