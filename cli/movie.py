@@ -17,8 +17,9 @@ def pixels(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+OF = "Field that colours tell.  [default: the first that differs from place to place or in time]"
 SPEED = "Seconds of the run per second of the movie.  [default: a few seconds in all]"
-Size = Annotated[tuple, typer.Option("--size", metavar="WxH", parser=pixels, help="Size in pixels.", show_default=False)]
+Size = Annotated[tuple, typer.Option("--size", metavar="WxH", parser=pixels, help="Size in pixels.  [default: 600x400]", show_default=False)]
 
 
 def movie(
@@ -28,7 +29,7 @@ def movie(
         Path | None,
         typer.Option("-o", "--out", "--to", metavar="FILE", parser=folder, help="File: .webp, .gif or .mp4.  [default: OUT/movie.webp]", show_default=False),
     ] = None,
-    of: Annotated[str | None, typer.Option("--of", metavar="FIELD", help="Field that colours tell.  [default: temperature]", show_default=False)] = None,
+    of: Annotated[str | None, typer.Option("--of", metavar="FIELD", help=OF, show_default=False)] = None,
     every: Annotated[int, typer.Option("--every", metavar="N", min=1, help="Show one of N snapshots.")] = 1,
     speed: Annotated[float | None, typer.Option("--speed", metavar="S", min=0, help=SPEED, show_default=False)] = None,
     size: Size = "600x400",  # type: ignore[assignment]  # a default goes through the parser too

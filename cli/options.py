@@ -56,7 +56,7 @@ def folder(text: str) -> Path:
 
 
 Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file that describes the experiment.", show_default=False)]
-Folder = Annotated[Path, typer.Argument(metavar="OUT", parser=folder, help="Folder of a sweep.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(metavar="OUT", parser=folder, help="Folder of a sweep or of a run.", show_default=False)]
 POINT = "Point by its values, as kappa=0.35,beta=13; beta=all takes one for each value.  [default: the point that stands for the sweep]"
 Points = Annotated[list[str] | None, typer.Argument(metavar="[POINT...]", help=POINT, show_default=False)]
 TO = "Folder for results.  [default: results/<config name>]"
