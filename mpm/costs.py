@@ -18,6 +18,8 @@ from mpm.scene.refusal import SceneError, placed
 LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 INCREMENTS = 0.8  # of STEP more with FLIP, whose increments go over the grid beside velocities: slump.yaml takes 0.61 s with APIC, 0.8 with affine FLIP
+MET = {1: 1e-6, 2: 2e-6, "axisymmetric": 2e-6, 3: 3.5e-6}  # s a piece of surface and step near something: places, gaps, impulses (mpm.contact)
+LOCKING = 1.0  # of STEP more with F-bar, whose averages go over the grid and back
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
@@ -169,10 +171,23 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
     parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
     each = STEP[experiment.grid.dimension] * (1.0 if experiment.method.transfer.kind in ("apic", "pic") else 1.0 + INCREMENTS)
     each += WARM if any(part.heat is not None and (part.expansion is not None or part.heating is not None) for part in parts) else 0.0
+    each += STEP[experiment.grid.dimension] * LOCKING * (experiment.method.locking is not None)
     each += max((FLOW[part.flow.map] for part in parts if part.flow is not None), default=0.0)
     intervals = max(heat_steps, outputs(experiment) - 1)  # each is cut into blocks of its own
     alone = steps * ALONE["step"] + (intervals + steps // BLOCK) * ALONE["block"] + heat_steps * ALONE["heat"] + outputs(experiment) * ALONE["output"]
     return LEAST["moving"] + alone + particles * (steps * each + heat_steps * HEAT[experiment.grid.dimension] + outputs(experiment) * OUTPUT)
+
+
+def meeting(experiment, scene, particles: int, steps: int) -> float:
+    """Seconds that contact takes: pieces of surface in the steps in which something may be near, two more of them a record (mpm.contact.insync)."""
+    from mpm.contact.outlook import near_from
+
+    share = 1 - near_from(scene) * experiment.time.scale / experiment.time.end
+    if share <= 0:
+        return 0.0
+    sampled = sum(len(body.particles.m) for body in scene.bodies)
+    pieces = int(scene.meeting.touching.first[-1]) * (particles / sampled) ** (1 - 1 / experiment.grid.directions)
+    return share * pieces * (steps + 2 * outputs(experiment)) * MET[experiment.grid.dimension]
 
 
 def estimate_moving(experiment) -> dict:
@@ -201,7 +216,7 @@ def estimate_moving(experiment) -> dict:
         "particles": particles,
         "unknowns": math.prod(extents(scene.space)),
         "steps": steps,
-        "seconds": moving(experiment, particles, steps, heat_steps),
+        "seconds": moving(experiment, particles, steps, heat_steps) + meeting(experiment, scene, particles, steps),
         "memory_bytes": memory(experiment),
         "output_bytes": output_bytes(experiment, particles),
         "limits": {name: limit * S for name, limit in (now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {})).items()},

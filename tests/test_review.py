@@ -97,6 +97,19 @@ def test_what_conducts_by_itself_is_told(transfer, steps, told):
     assert not list(LOOKS["heat"](scene(0.0, 4.0, method={"temperature": transfer}, materials=materials), run))
 
 
+@pytest.mark.parametrize(("passed", "conductance", "told"), [(0.0, None, []), (2.0, None, ["a", "b"]), (2.0, 1e-6, []), (-2.0, 5.0, ["a", "b"])])
+def test_depth_of_what_passes_between_bodies(passed, conductance, told):
+    """Heat that reaches less than a cell deep into the body that is touched; not where the contact and not the body resists."""
+    heat = {"heat": {"fourier": {"kappa": 1e-3, "alpha": 1.5}}}
+    bodies = {
+        name: {"shape": {"box": {"lower": [low], "upper": [low + 2]}}, "temperature": T, "material": "solid"} for name, low, T in (("a", 1, 300), ("b", 3, 350))
+    }
+    contacts = [{"between": ["a", "b"], "conductance": conductance}] if conductance else []
+    experiment = scene(0.0, 4.0, bodies=bodies, contacts=contacts, materials={"solid": SOLID | heat}, output={"every": 0.1})
+    run = SimpleNamespace(series={"heat_a_b": np.array([0.0, passed])})
+    assert [text.split()[5].rstrip(",") for text in LOOKS["depth"](experiment, run)] == told
+
+
 @pytest.mark.parametrize(
     ("changes", "where"), [({"surfaces": [{"of": "bar", "from": 2.0, "flux": {"q": 1.0}}]}, "surfaces.0"),
                            ({"sources": [{"of": "bar", "from": 3.0, "heat": 1.0}]}, "sources.0"),

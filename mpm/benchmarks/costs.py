@@ -29,6 +29,9 @@ SCENES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("scenes/loaf_oven_spring", {}),
     ("scenes/dough_creep", {}),
     ("scenes/cube", {}),
+    ("scenes/chocolate_pour", {}),
+    ("verification/two_bars", {}),
+    ("verification/incline", {}),
 )
 ROUNDS, LONG = 5, 2.0
 

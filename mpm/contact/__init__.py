@@ -21,6 +21,7 @@ Further files
     drive      how tools move as they are told
     found      the contacts of one step
     insync     velocities at the time of the positions
+    outlook    how much of a run has something near, from its start alone
     texture    what a press that bites twice says of a body
     links      where heat passes between bodies
 """

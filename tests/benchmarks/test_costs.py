@@ -1,10 +1,14 @@
 """What `mpm plan` says a point costs: more for more, and what it costs within a factor of two."""
 
+import math
+
 import pytest
 
 import mpm
 from mpm.benchmarks.costs import CONFIGS, SCENES, measure
+from mpm.contact.outlook import fall, near_from
 from mpm.costs import estimate
+from mpm.scene.build import build
 
 
 def seconds(name, changes):
@@ -16,6 +20,22 @@ def test_more_costs_more():
     assert 1 < fine / coarse and 2.5 < finer / fine < 4  # four times the work where a run is more than what happens once, and once an output
     assert seconds("verification/hencky_bar", {"output.every": 0.01}) > seconds("verification/hencky_bar", {})
     assert seconds("scenes/slump", {"materials.dough.flow.ellipse.map": "clipped"}) > seconds("scenes/slump", {})
+
+
+@pytest.mark.parametrize(
+    ("gap", "speed", "pull", "time"), [(1, 0, 2, 1), (1, 2, 0, 0.5), (1, -1, 2, (1 + 5**0.5) / 2), (0.4, 1, -1, 1 - 0.2**0.5), (0.6, 1, -1, math.inf),
+                                       (1, -1, 0, math.inf), (0, -1, 0, 0)]
+)  # fmt: skip
+def test_when_a_gap_is_closed(gap, speed, pull, time):
+    assert fall(gap, speed, pull) == pytest.approx(time, rel=1e-12)
+
+
+def test_contact_costs_from_when_something_is_near():
+    """The cube falls on to its floor and then meets it; in slump.yaml nothing falls towards a side."""
+    cube = mpm.load(CONFIGS / "scenes" / "cube.yaml")
+    assert 0.04 < near_from(build(cube)) < 0.1 / 1.5  # 0.1 m at 1.5 m/s and faster, less half a cell of skin
+    assert near_from(build(mpm.load(CONFIGS / "scenes" / "slump.yaml"))) == math.inf
+    assert seconds("scenes/cube", {}) > 3 * seconds("scenes/cube", {"walls": {}, "gravity": [0, 0, 0], "bodies.cube.velocity": [0, 0, 0.1]})
 
 
 @pytest.mark.parametrize("name", ["cube", "slump", "loaf_oven_spring", "chocolate_pour", "dough_creep"])
