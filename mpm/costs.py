@@ -18,7 +18,7 @@ from mpm.scene.refusal import SceneError, placed
 LEAST = {"rigid": 0.6e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 INCREMENTS = 0.8  # of STEP more with FLIP, whose increments go over the grid beside velocities: slump.yaml takes 0.61 s with APIC, 0.8 with affine FLIP
-MET = {1: 1e-6, 2: 2e-6, "axisymmetric": 2e-6, 3: 3.5e-6}  # s a piece of surface and step near something: places, gaps, impulses (mpm.contact)
+MET = {1: 1e-6, 2: 1.5e-6, "axisymmetric": 1.5e-6, 3: 5e-6}  # s a piece of surface and step near something: places, gaps, impulses (mpm.contact)
 LOCKING = 1.0  # of STEP more with F-bar, whose averages go over the grid and back
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6}  # s, whatever the number of particles
@@ -178,12 +178,13 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
     return LEAST["moving"] + alone + particles * (steps * each + heat_steps * HEAT[experiment.grid.dimension] + outputs(experiment) * OUTPUT)
 
 
-def meeting(experiment, scene, particles: int, steps: int) -> float:
+def meeting(experiment, scene, particles: int, steps: int, sound: float) -> float:
     """Seconds that contact takes: pieces of surface in the steps in which something may be near, two more of them a record (mpm.contact.insync)."""
-    from mpm.contact.outlook import near_from
+    from mpm.contact.outlook import near_share
 
-    share = 1 - near_from(scene) * experiment.time.scale / experiment.time.end
-    if share <= 0:
+    parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
+    settles = any(part.flow is not None for part in parts) or any(load.drag is not None for load in experiment.loads)
+    if not (share := near_share(scene, experiment.time.end / experiment.time.scale, sound, settles)):
         return 0.0
     sampled = sum(len(body.particles.m) for body in scene.bodies)
     pieces = int(scene.meeting.touching.first[-1]) * (particles / sampled) ** (1 - 1 / experiment.grid.directions)
@@ -196,6 +197,7 @@ def estimate_moving(experiment) -> dict:
     But the fastest particle of a body that turns: it lies up to half a larger cell nearer to the axis.
     """
     from mpm.boundary import extents
+    from mpm.integrate.timestep import WAVE
     from mpm.scene.build import build
     from mpm.simulation import Clock
     from mpm.total.drive import present_limits
@@ -208,6 +210,7 @@ def estimate_moving(experiment) -> dict:
     step = (scene.step or now.step() * scene.safety) * S
     refuse_endless(experiment, step)
     pace = min((scene.heat_step or now.pace) * S, experiment.time.end)
+    sound = WAVE * scene.space.h / now.mechanical["elastic wave"]
     binds = "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
     steps = math.ceil(experiment.time.end / min(step, pace))
     intervals = outputs(experiment) - 1
@@ -216,7 +219,7 @@ def estimate_moving(experiment) -> dict:
         "particles": particles,
         "unknowns": math.prod(extents(scene.space)),
         "steps": steps,
-        "seconds": moving(experiment, particles, steps, heat_steps) + meeting(experiment, scene, particles, steps),
+        "seconds": moving(experiment, particles, steps, heat_steps) + meeting(experiment, scene, particles, steps, sound),
         "memory_bytes": memory(experiment),
         "output_bytes": output_bytes(experiment, particles),
         "limits": {name: limit * S for name, limit in (now.mechanical | now.heat | ({"heat pace": now.pace} if math.isfinite(now.pace) else {})).items()},

@@ -6,7 +6,7 @@ import pytest
 
 import mpm
 from mpm.benchmarks.costs import CONFIGS, SCENES, measure
-from mpm.contact.outlook import fall, near_from
+from mpm.contact.outlook import fall, near_share
 from mpm.costs import estimate
 from mpm.scene.build import build
 
@@ -32,9 +32,11 @@ def test_when_a_gap_is_closed(gap, speed, pull, time):
 
 def test_contact_costs_from_when_something_is_near():
     """The cube falls on to its floor and then meets it; in slump.yaml nothing falls towards a side."""
-    cube = mpm.load(CONFIGS / "scenes" / "cube.yaml")
-    assert 0.04 < near_from(build(cube)) < 0.1 / 1.5  # 0.1 m at 1.5 m/s and faster, less half a cell of skin
-    assert near_from(build(mpm.load(CONFIGS / "scenes" / "slump.yaml"))) == math.inf
+    cube = build(mpm.load(CONFIGS / "scenes" / "cube.yaml"))
+    assert 0.75 < near_share(cube, 0.3, 11.6, settles=True) < 1 - 0.04 / 0.3  # 0.1 m at 1.5 m/s and faster, less half a cell of skin
+    assert 2 * 0.3 / 11.6 < 0.3 * near_share(cube, 0.3, 11.6, settles=False) < 4 * 0.3 / 11.6  # in touch for 2 L/c
+    assert near_share(cube, 0.04, 11.6, settles=True) == 0
+    assert near_share(build(mpm.load(CONFIGS / "scenes" / "slump.yaml")), 5.0, 2.0, settles=True) == 0
     assert seconds("scenes/cube", {}) > 3 * seconds("scenes/cube", {"walls": {}, "gravity": [0, 0, 0], "bodies.cube.velocity": [0, 0, 0.1]})
 
 
