@@ -1,7 +1,7 @@
 """How much of a run has something near, from its start alone: for what a run will cost (mpm.costs).
 
 Speed at the start and gravity close a gap at t0, with speed v there. What settles (flows, or is dragged) then stays; what is elastic bounces, is near for
-    tau = 2 L/c + 2 margin/v        (a wave through the body and back, and the way in which it is near and does not touch)
+    tau = 2 sqrt(D) L/c + 2 margin/v        (a wave through the body and back, slower by about sqrt(D) than that which limits steps; and the way in and out)
 and comes back after 2 v/g.
 Fails when  bodies spread, or are pushed towards what they would not fall to: near for more than is said
 """
@@ -59,7 +59,7 @@ def near_share(scene, end: float, sound: float, settles: bool) -> float:
         left = end - begins
         if left > 0 and begins > 0 and not settles:
             fast = math.sqrt(speed**2 + 2 * pull * gap)
-            each = 2 * extent / sound + 2 * margin / fast
+            each = 2 * math.sqrt(len(scene.gravity)) * extent / sound + 2 * margin / fast
             left = min(left, each * (1 + left // (each + 2 * fast / pull))) if pull > 0 else min(left, each)
         share = max(share, left / end)
     return share
