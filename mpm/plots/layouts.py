@@ -146,7 +146,7 @@ def families(view: View, lines: Axis | None) -> Any:
     fig = figure(view.title, 4.8 if rows == 1 else 3.9 * rows)
     grid = fig.subplots(rows, columns, squeeze=False).ravel()
     at = dict(view.chosen)
-    if lines is not None and lines.dim == view.design:
+    if lines is not None and view.sampled and lines.dim == view.design:
         grid[0].set_title(f"Some points of the sample, by {lines.called}; all parameters differ")
     elif lines is not None:
         grid[0].set_title(", ".join(axis.says(at[axis.dim]) for axis in view.axes if axis is not lines))

@@ -70,7 +70,7 @@ def figures(found: Results) -> list[dict[str, Any]]:
     from mpm.plots import drawn
 
     view, made = found.view, []
-    varied = " and ".join(axis.name for axis in view.axes) or view.design or "nothing"
+    varied = " and ".join(axis.name for axis in view.axes) or view.design or "time"
     kinds = [("overview", f"Overview: {', '.join(view.long_name(name) for name in view.finals[:2]) or 'no result'}, over {varied}.")]
     if (view.axes or view.design) and (view.series_names() or not view.ok.any()):
         kinds.append(("series", f"Over time: {', '.join(view.long_name(name) for name in view.series_names()[:3]) or 'nothing'}, of a few points."))

@@ -42,7 +42,7 @@ def content(found: Results, beside: list[str]) -> dict[str, Any]:
 def varied(axis: Any, view: View) -> dict[str, Any]:
     """A row of what varied: name, meaning, path, values."""
     coordinate = view.root.coords[axis.name].attrs
-    values = [axis.text(i) for i in range(axis.size)]
+    values = list(dict.fromkeys(axis.text(i) for i in range(axis.size)))
     ends = f"{words.number(axis.values.min())} to {words.number(axis.values.max())}" if len(values) > 12 else ", ".join(values)
     said = f"{ends} {axis.units}".strip() + (f", {len(values)} values" if len(values) > 12 else "")
     about = visible(words.short(str(coordinate.get("long_name", ""))))
@@ -58,7 +58,7 @@ def points(view: View) -> dict[str, Any]:
     for axis in axes:
         where = [view.sizes[dim] if dim == axis.dim else 1 for dim in view.dims]
         values = np.broadcast_to(axis.values.reshape(where), shape).ravel()
-        columns.append({"name": visible(axis.name), "label": visible(axis.title), "swept": True})
+        columns.append({"name": visible(axis.name), "label": visible(axis.called if axis.category else axis.title), "swept": True})
         cells.append([plain(value) for value in values])
     for name in names:
         scale = view.scale(name)

@@ -1,7 +1,12 @@
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
-  const columns = data.columns.filter(column => column.values.some(value => typeof value === "number"));
+  const numeric = column => column.values.some(value => typeof value === "number");
+  const kinds = column => {  // what is swept in words: its places, named
+    const names = [...new Set(column.values)];
+    return { ...column, names, values: column.values.map(value => names.indexOf(value)) };
+  };
+  const columns = data.columns.filter(column => column.swept || numeric(column)).map(column => numeric(column) ? column : kinds(column));
   const count = data.status.length;
   const byId = id => document.getElementById(id);
   const movie = byId("movie"), play = byId("play");
@@ -29,7 +34,14 @@
     parent.appendChild(made);
     return made;
   };
-  const short = value => value === null ? "–" : typeof value === "string" ? value : Number(value.toPrecision(4)).toString();
+  const short = (value, step = 0) => {  // digits enough to tell `step` apart
+    if (typeof value !== "number") { return value === null ? "–" : value; }
+    const digits = step > 0 && value !== 0 ? Math.ceil(Math.log10(Math.abs(value) / step)) + 1 : 4;
+    return Number(value.toPrecision(Math.min(15, Math.max(4, digits)))).toString();
+  };
+  const said = (column, value, step) => column.names ? column.names[value] : short(value, step);
+  const tick = (column, value, step) => { const text = String(said(column, value, step)); return text.length > 12 ? text.slice(0, 11) + "…" : text; };
+  const ticks = (column, [low, high]) => column.names && column.names.length < 9 ? column.names.map((name, k) => k) : [0, 1, 2, 3, 4, 5].map(k => low + (high - low) * k / 5);
   const range = column => {
     const numbers = column.values.filter(value => typeof value === "number");
     const low = Math.min(...numbers), high = Math.max(...numbers);
@@ -62,19 +74,18 @@
   const say = i => {
     current = i;
     marks.forEach((mark, j) => { if (mark) { mark.classList.toggle("on", i === j); } });
-    told.textContent = columns.map(column => column.label + ": " + short(column.values[i])).join("; ") + "; " + data.status[i];
+    told.textContent = columns.map(column => column.label + ": " + said(column, column.values[i])).join("; ") + "; " + data.status[i];
   };
   function scatter() {
     chart.replaceChildren();
     const [x, y, c] = selects.map(select => columns[Number(select.value)]);
     const [left, right, top, bottom] = [80, 780, 15, 360], [x0, x1] = range(x), [y0, y1] = range(y), [c0, c1] = range(c);
     const px = value => left + (value - x0) / (x1 - x0) * (right - left), py = value => bottom - (value - y0) / (y1 - y0) * (bottom - top);
-    for (let k = 0; k <= 5; k++) {
-      const vx = x0 + (x1 - x0) * k / 5, vy = y0 + (y1 - y0) * k / 5;
-      draw(chart, "line", { class: "grid", x1: left, x2: right, y1: py(vy), y2: py(vy) });
-      draw(chart, "text", { x: left - 8, y: py(vy) + 4, "text-anchor": "end" }, short(vy));
-      draw(chart, "text", { x: px(vx), y: bottom + 18, "text-anchor": "middle" }, short(vx));
-    }
+    ticks(y, [y0, y1]).forEach(value => {
+      draw(chart, "line", { class: "grid", x1: left, x2: right, y1: py(value), y2: py(value) });
+      draw(chart, "text", { x: left - 8, y: py(value) + 4, "text-anchor": "end" }, tick(y, value, (y1 - y0) / 5));
+    });
+    ticks(x, [x0, x1]).forEach(value => draw(chart, "text", { x: px(value), y: bottom + 18, "text-anchor": "middle" }, tick(x, value, (x1 - x0) / 5)));
     draw(chart, "line", { class: "axis", x1: left, x2: right, y1: bottom, y2: bottom });
     draw(chart, "line", { class: "axis", x1: left, x2: left, y1: top, y2: bottom });
     draw(chart, "text", { x: (left + right) / 2, y: bottom + 42, "text-anchor": "middle" }, x.label);
@@ -119,8 +130,8 @@
     draw(parallel, "line", { class: "axis", x1: at(k), x2: at(k), y1: top, y2: bottom });
     const name = column.label.length > 22 ? column.label.slice(0, 21) + "…" : column.label;
     draw(parallel, "text", { x: k ? (k === shown.length - 1 ? 795 : at(k)) : 5, y: k % 2 ? 16 : 32, "text-anchor": k ? (k === shown.length - 1 ? "end" : "middle") : "start" }, name);
-    draw(parallel, "text", { x: at(k), y: top - 4, "text-anchor": "middle" }, short(ranges[k][1]));
-    draw(parallel, "text", { x: at(k), y: bottom + 16, "text-anchor": "middle" }, short(ranges[k][0]));
+    draw(parallel, "text", { x: at(k), y: top - 4, "text-anchor": "middle" }, tick(column, ranges[k][1], ranges[k][1] - ranges[k][0]));
+    draw(parallel, "text", { x: at(k), y: bottom + 16, "text-anchor": "middle" }, tick(column, ranges[k][0], ranges[k][1] - ranges[k][0]));
     const brush = draw(parallel, "rect", { class: "brush", x: at(k) - 7, width: 14, y: 0, height: 0, visibility: "hidden" });
     const handle = draw(parallel, "rect", { class: "handle", x: at(k) - 14, width: 28, y: top - 8, height: bottom - top + 16 });
     let began = null;
