@@ -71,7 +71,7 @@ def final(tree: Any, of: str | None = None, over: str | None = None, ax: Any = N
     from mpm.plots.style import figure, settle, styled
 
     view = _viewed(tree, of, over)
-    if not view.axes or not view.finals:
+    if not (view.axes or view.sampled) or not view.finals:
         raise UnknownFigure("a result is drawn over the axes of a sweep; this dataset has no axis or no result")
     with styled():
         ax = figure(view.title, 5.2).add_subplot() if ax is None else ax
@@ -199,7 +199,7 @@ def _viewed(tree: Any, of: str | None = None, over: str | None = None) -> Any:
     from mpm.plots.view import View
 
     view = View(tree)
-    for asked, known, what in ((of, view.finals, "final"), (over, [axis.name for axis in view.axes], "swept parameter")):
+    for asked, known, what in ((of, view.finals, "final"), (over, view.along_names, "swept parameter")):
         if asked is not None and asked not in known:
             raise UnknownFigure(f"there is no {what} {asked!r}; there are {', '.join(known) or 'none'}")
     view.wanted, view.along = of, over

@@ -37,7 +37,7 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     scale = view.scale(name)
     shown, order = scale(values), np.argsort(x.positions, kind="stable")
     for row, colour in zip(shown, colours, strict=True):
-        ax.plot(x.positions[order], row[order], "o" if x.category else "-o", color=colour, clip_on=False, zorder=3)
+        ax.plot(x.positions[order], row[order], "o" if x.category or x.dim == view.design else "-o", color=colour, clip_on=False, zorder=3)
     doubts = hollow(ax, view, x, lines, at, shown, colours)
     x.apply(ax)
     place = ax.get_subplotspec()

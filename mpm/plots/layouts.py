@@ -69,14 +69,15 @@ def stated(view: View, head: str, rows: list[str]) -> Any:
 
 def along(view: View) -> Axis | None:
     """The axis that colours tell in figures of series; None of a single point."""
-    if view.sampled:
-        return view.parameters[0]
-    x, lines, _ = arrange(view) if view.axes else (None, None, [])
+    x, lines, _ = arrange(view) if view.axes or view.sampled else (None, None, [])
     return lines or x
 
 
 def arrange(view: View, name: str = "") -> tuple[Axis, Axis | None, list[Axis]]:
-    """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along; for errors the cell or the step."""
+    """Which axis runs along the figure, which is told by colour, and the rest: numbers first, the longest along; for errors the cell or the step.
+    Of a sample the parameter that is asked for, or its first: all the others differ."""
+    if view.sampled:
+        return next((axis for axis in view.parameters if axis.name == view.along), view.parameters[0]), None, []
     fine = ("cell", "step") if name.startswith("error_") else ()
     order = sorted(view.axes, key=lambda axis: (axis.name != view.along, axis.category, axis.name not in fine, -axis.size))
     return order[0], order[1] if len(order) > 1 else None, order[2:]
@@ -164,7 +165,7 @@ def all_finals(view: View) -> Any:
     with styled():
         if not view.ok.any():
             return nothing(view)
-        if view.sampled:
+        if view.sampled and view.along is None:
             return scatter(view, most=1 if view.wanted else 6)
         x, lines, _ = arrange(view)
         told = [name for name in view.finals if not (view.constant(name) or view.round_off(name))] or view.finals
@@ -175,6 +176,8 @@ def all_finals(view: View) -> Any:
         grid = fig.subplots(rows, columns, squeeze=False).ravel()
         for ax, name in zip(grid, names, strict=False):
             finals.panel(ax, view, name, x, lines, dict(view.chosen), key=name == names[0])
+        if view.sampled:
+            grid[0].set_title("All parameters differ")
         for ax in grid[len(names) :]:
             ax.set_axis_off()
         return fig

@@ -54,6 +54,11 @@ class View:
         """Along what figures are drawn: swept dimensions, and a list of points that differ in words only."""
         return self.own if self.design is None or self.sampled else [*self.own, self.listing()]
 
+    @property
+    def along_names(self) -> list[str]:
+        """What a result can be drawn over."""
+        return [axis.name for axis in (self.parameters if self.sampled else self.axes)]
+
     def listing(self) -> Axis:
         """A list of points as kinds: what differs in words, else the number of the point."""
         rows = [axis for axis in self.parameters if axis.dim == self.design]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.legend import Legend
 
-from mpm.plots import overview
+from mpm.plots import UnknownFigure, _draw, final, overview
 from mpm.plots.sample import correlation, ranks, spearman
 
 RANDOM = np.random.default_rng(3)
@@ -33,6 +33,17 @@ def test_scatter_a_parameter_and_bars(tree, tmp_path):
     assert bars.patches[0].get_width() == pytest.approx(1.0)
     colours = [bar.get_facecolor() for bar in bars.patches]
     assert colours[0] != colours[1]  # the interval of beta holds zero: pale
+
+
+def test_one_result_over_one_parameter(tree):
+    """What `mpm plot OUT finals --of extent_x --over kappa` draws of a sample; it once said that nothing is swept."""
+    whole = sample(tree, 32)
+    ax = _draw(whole, "finals", "extent_x", "kappa").axes[0]
+    assert ax.get_ylabel() == "Extent of the material along x [mm]" and ax.get_xlabel().endswith("κ [W/m/K]")
+    assert len(ax.lines[0].get_xdata()) == 32 and ax.lines[0].get_linestyle() == "None"
+    assert final(whole, "extent_x", over="beta").axes[0].get_xlabel().endswith("β [W/m²/K]")
+    with pytest.raises(UnknownFigure, match="kappa, beta, eta"):
+        _draw(whole, "finals", "extent_x", "cell")
 
 
 def test_few_points_give_no_bars(tree):
