@@ -183,13 +183,8 @@ def _draw(tree: Any, name: str, of: str | None = None, over: str | None = None) 
     from mpm.plots import layouts
     from mpm.plots.style import settle
 
-    kinds, view = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals}, _viewed(tree, of, over)
-    if name == "finals" and not view.axes and not view.sampled:
-        raise UnknownFigure("finals are drawn over what a sweep varies, and this is one point: `mpm plot OUT series` draws it over time; its numbers are what"
-                            " `mpm run` prints, and `mpm export OUT --to numbers.csv` writes")  # fmt: skip
-    if view.ok.any() and not (view.finals if name == "finals" else view.series_names() if name == "series" else True):
-        raise UnknownFigure(f"the dataset holds no {name} with a number")
-    fig = kinds[name](view)
+    kinds = {"overview": layouts.overview, "series": layouts.all_series, "finals": layouts.all_finals}
+    fig = kinds[name](_viewed(tree, of, over))
     settle(fig.axes)
     return fig
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.plots import finals, series, words
+from mpm.plots import UnknownFigure, finals, series, words
 from mpm.plots.sample import FEWEST, chief, scatter
 from mpm.plots.style import INK, QUIET, figure, styled
 from mpm.plots.view import Axis, View, spread
@@ -132,7 +132,9 @@ def share(axes: Any) -> None:
 
 
 def all_series(view: View) -> Any:
-    """Every family of series: of one point, or of a few along the axis that colours tell."""
+    """Every family of series: of one point, or of a few along the axis that colours tell. UnknownFigure where there are none."""
+    if view.ok.any() and not view.series_names():
+        raise UnknownFigure("the dataset holds no series with a number")
     with styled():
         return families(view, along(view)) if view.series_names() else nothing(view)
 
@@ -161,7 +163,14 @@ def families(view: View, lines: Axis | None) -> Any:
 
 
 def all_finals(view: View) -> Any:
-    """Up to six finals over the first axis: those that vary."""
+    """Up to six finals over the first axis: those that vary. UnknownFigure where nothing was swept, or nothing has a number."""
+    if not view.axes and not view.sampled:
+        raise UnknownFigure(
+            "finals are drawn over what a sweep varies, and this is one point: `mpm plot OUT series` draws it over time; its numbers are what"
+            " `mpm run` prints, and `mpm export OUT --to numbers.csv` writes"
+        )
+    if view.ok.any() and not view.finals:
+        raise UnknownFigure("the dataset holds no finals with a number")
     with styled():
         if not view.ok.any():
             return nothing(view)
