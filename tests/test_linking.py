@@ -105,7 +105,7 @@ def test_steps_are_shared_by_bodies_that_differ_in_what_they_do_not_read():
 
 def test_what_has_to_be_compiled_is_foreseen(tmp_path, monkeypatch):
     """Heat and contacts that the config names take seconds more; none once the kernels are there, whatever its numbers."""
-    monkeypatch.setattr(compiling, "folder", lambda: tmp_path)
+    monkeypatch.setattr(compiling, "kernels", lambda: tmp_path)
     bare = {"walls": {"left": "contact"}, **BARE}
     plain, touching, warm = (compiling.expected(mpm.load(data)) for data in (bare | {"walls": {"left": "slip"}}, bare, SCENE))
     assert 3.0 < plain < min(touching, warm)
