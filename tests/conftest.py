@@ -1,6 +1,6 @@
 """Small scenes that the tests of the core share. One set of physics for most of them, so that each dimension and transfer compiles once.
 
-A module with `pytestmark = pytest.mark.plain` runs in a child process without the compiler: its small scenes take a second in plain Python, where compiling
+Tests with `pytest.mark.plain` run in a child process for each module, without the compiler: their small scenes take a second in plain Python, where compiling
 their physics would take twenty. tests/test_roles.py holds compiled and plain results together.
 """
 
@@ -163,7 +163,8 @@ def pytest_runtest_protocol(item, nextitem):
         return None
     children = item.session.__dict__.setdefault("plain_modules", {})
     if item.path not in children:
-        children[item.path] = without_compiler(item.config, [one.nodeid for one in item.session.items if one.path == item.path])
+        plain = [one.nodeid for one in item.session.items if one.path == item.path and one.get_closest_marker("plain")]
+        children[item.path] = without_compiler(item.config, plain)
     item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
     for report in children[item.path][item.nodeid]:
         item.ihook.pytest_runtest_logreport(report=report)

@@ -18,6 +18,8 @@ from mpm.scene import law, menus, scaling
 from mpm.scene.exchange import PROGRAMMES, acts_of
 from mpm.scene.refusal import SceneError
 
+pytestmark = pytest.mark.plain
+
 WARM, COLD, AREA, CAPACITY, END = 400.0, 300.0, 2.0, 2.0 * 1.5 * 0.75, 0.5
 RAMP = {"table": {"time": [0, END], "value": [WARM, COLD]}}
 SWING = {"sine": {"mean": 350.0, "amplitude": 50.0, "period": 1.0}}

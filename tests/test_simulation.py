@@ -95,12 +95,14 @@ def failed(run, *kinds):
     assert all(np.isfinite(run.finals[name]) for name in run.series)
 
 
+@pytest.mark.plain
 def test_steps_far_past_the_limit_diverge(core):
     run = core.play(core.experiment(1, {"time.safety": 10.0, "time.end": 20.0, "output.every": 4.0}), lambda scene: flow_out(scene, 0.1))[1]
     failed(run, *FAILURES)
     assert "particle" in run.outcome.message and run.steps >= 1
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize(("rate", "kind"), [(-12.0, "inverted"), (-7.0, "overstretched"), (7.0, "overstretched")])
 def test_a_step_that_inverts_or_overstretches(core, rate, kind):
     run = core.play(core.experiment(1, {"time.step": 0.1}), lambda scene: flow_out(scene, rate))[1]
@@ -108,6 +110,7 @@ def test_a_step_that_inverts_or_overstretches(core, rate, kind):
     assert "particle 0" in run.outcome.message and "step 0" in run.outcome.message
 
 
+@pytest.mark.plain
 def test_a_particle_leaves_the_grid(core):
     body = core.config(1)["bodies"]["body"] | {"velocity": [60.0]}
     run = core.play(core.experiment(1, {"time.step": 0.1}, bodies={"body": body}))[1]
@@ -131,6 +134,7 @@ def test_a_value_that_is_not_finite(core, field):
     assert len(run.times) > 1
 
 
+@pytest.mark.plain
 def test_a_step_that_shrinks_without_bound(core):
     """A body that falls for ever, far faster than its waves: the step falls under 1/256 of the first."""
     soft = {"materials.solid.elastic.hencky.lam": 1e-5, "materials.solid.elastic.hencky.mu": 1e-5, "kappa": 1e-6, "beta": 1e-6}

@@ -7,6 +7,8 @@ import pytest
 
 from mpm import simulation
 
+pytestmark = pytest.mark.plain
+
 CELLS = (0.125, 0.0625, 0.03125)
 G, C = 1e-4, 3.5**0.5  # weight; speed of sound of the shared material, density 2
 WEIGHT = {"bodies": {"body": {"shape": {"box": {"lower": [0.0], "upper": [1.0]}}, "temperature": 400, "material": "solid"}}, "surfaces": [],

@@ -23,7 +23,7 @@ def shock(core, dimension, transfer, heat, beta, repair=True, outside=300.0, **s
 
 
 # Repair neither knows the scheme nor the dimension: both schemes in one, the explicit one in two; more are slow, as each costs a compilation.
-SHOCKS = [("implicit", INF, 1), ("explicit", 20.0, 1), ("explicit", 20.0, 2)]
+SHOCKS = [pytest.param(*case, marks=pytest.mark.plain) for case in (("implicit", INF, 1), ("explicit", 20.0, 1), ("explicit", 20.0, 2))]
 MORE = [("implicit", INF, 2), *((*one, D) for one in (("implicit", INF), ("explicit", 20.0)) for D in ("axisymmetric", 3))]
 SHOCKS += [pytest.param(*case, marks=pytest.mark.slow) for case in MORE]
 
@@ -106,6 +106,7 @@ def test_a_drop_that_melts_over_a_wall(core, dimension, transfer):
     assert run.series["temperature_min"].min() >= 293.15 - 1e-9 and run.series["temperature_max"].max() <= 313.15 + 1e-9
 
 
+@pytest.mark.plain
 def test_heating_shock_with_latent_heat(core):
     """From below, through a bump of alpha: enthalpy is what is moved."""
     alpha = {"bump": {"base": 1.5, "heat": 60.0, "at": 450.0, "width": 2.0}}

@@ -102,6 +102,7 @@ def test_rotation_keeps_temperature_and_strains_within_drift_and_centrifugal_loa
     assert np.abs(scene.bodies[0].thermal.theta - 37.0).max() < 1e-12 * 37.0 * run.steps
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_adiabatic_compression(core, dimension):
     """No conduction to speak of, one heat step at the start: every particle stays on Theta = Theta_0 J^-Gamma, whatever the motion."""

@@ -5,6 +5,8 @@ import pytest
 
 from mpm.integrate.xpic import sharpened
 
+pytestmark = pytest.mark.plain
+
 CELLS, H = 32, 1 / 32
 
 

@@ -5,6 +5,8 @@ import pytest
 
 from mpm.verification import exact_solution
 
+pytestmark = pytest.mark.plain
+
 STEPS = (0.08, 0.04, 0.02)
 
 
