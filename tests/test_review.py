@@ -37,6 +37,7 @@ PAIRS = {  # kind: (raises it, does not)
 }
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("kind", PAIRS)
 def test_a_scene_raises_it_and_its_sibling_does_not(kind):
     raised, quiet = (mpm.run_point(scene(**{"lower": 0.0, "upper": 4.0} | more)) for more in PAIRS[kind])

@@ -12,6 +12,8 @@ from mpm.scene.build import build
 from mpm.scene.refusal import SceneError
 from mpm.state import Load, NoSource
 
+pytestmark = pytest.mark.plain
+
 
 def scene(core, dimension, loads, **sections):
     data = core.config(dimension, surfaces=[], loads=loads, **sections)

@@ -8,6 +8,8 @@ import pytest
 import mpm
 from mpm.scene.point import batch, run_zero
 
+pytestmark = pytest.mark.plain
+
 PULL = [{"strain_rate": {"zz": -0.05}, "stress": {"xx": 0, "yy": 0}}]
 HEAT = {"heat": {"fourier": {"kappa": 0, "alpha": 500}}}
 

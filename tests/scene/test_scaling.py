@@ -7,6 +7,8 @@ import mpm
 from mpm.config import ConfigError
 from mpm.scene.scaling import hurried
 
+pytestmark = pytest.mark.plain
+
 
 def creep(core, scale, **time):
     """A viscous column in one direction that sags under gravity while air warms it: relaxation 2 s, 20 s in all."""

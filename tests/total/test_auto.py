@@ -7,6 +7,8 @@ import mpm
 from mpm.runner import estimate, run_point
 from mpm.scene.framing import choice
 
+pytestmark = pytest.mark.plain
+
 
 def bar(**changes):
     """A bar between two walls, on neither."""
