@@ -26,6 +26,7 @@ from mpm.integrate.state_check import span, unsound
 from mpm.integrate.surroundings import Surroundings
 from mpm.materials import Hencky
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, OUTGROWN, Outcome, outcome
+from mpm.sources import acting
 from mpm.state import PAD, Isothermal, Load, NoExchange, NoExpansion, NoHeating, NoSource, Radiation, Thermal
 from mpm.transfer import Flip
 from mpm.warned import warning
@@ -46,6 +47,7 @@ class Guards:
             all(isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies)
             and not any(len(reference.load) for reference in scene.references)
             and (scene.meeting is None or scene.meeting.drive is None)
+            and scene.course is None
         )
         self.growth = NOISY if isinstance(scene.scheme, Flip) and scene.scheme.affine else GROWTH
         self.least = sum(rounded(body) for body in scene.bodies) if self.judged else 0.0
@@ -66,8 +68,8 @@ class Guards:
 
     def share(self, scene) -> None:
         """Bodies that pass heat to each other have one range of data."""
-        links = scene.meeting.links if scene.meeting is not None else np.zeros((0, 0))
-        for b, c in np.argwhere(links > 0):
+        passing = scene.meeting.passing if scene.meeting is not None else np.zeros((0, 0))
+        for b, c in np.argwhere(passing):
             one, other = self.data[b], self.data[c]
             one.low, one.high = min(one.low, other.low), max(one.high, other.high)
             one.heats, one.cools, one.warms = one.heats or other.heats, one.cools or other.cools, one.warms or other.warms
@@ -159,7 +161,7 @@ class Data:
         if isinstance(body.thermal, Isothermal):
             return
         theta = body.thermal.theta
-        self.heats = not (isinstance(body.source, NoSource | Load) and isinstance(body.heating, NoHeating))
+        self.heats = not (all(isinstance(one, NoSource | Load) for one in acting(body.source)) and isinstance(body.heating, NoHeating))
         self.cools = self.warms = False  # by a flux, which knows no bound that way
         self.low, self.high = float(np.min(theta)), float(np.max(theta))
 

@@ -179,7 +179,7 @@ class Recorder:
         yield "strain_max", strain
         yield "energy_kinetic", motion
         yield "energy_elastic", elastic
-        total = motion + elastic - np.sum(m[:, None] * x * scene.gravity)
+        total = motion + elastic - (np.sum(m[:, None] * x * scene.gravity[0]) if scene.course is None or not scene.course.gravity else 0.0)
         yield "energy_total", total
         yield "dissipation_total", clock.dissipated
         work = clock.worked + (scene.meeting.work if scene.meeting is not None else 0.0)

@@ -49,7 +49,7 @@ class Scene:
     names: tuple[str, ...]
     bodies: tuple
     walls: np.ndarray  # (3, 2) kinds of mpm.boundary
-    gravity: np.ndarray  # (D,)
+    gravity: np.ndarray  # (1, D), or a row a step where it changes over time [m/s2]
     blend: float  # of the temperature transfer (integrate/heat_step.py)
     affine: float
     times: np.ndarray  # output times, the first 0 [s]
@@ -61,9 +61,10 @@ class Scene:
     outlines: tuple = ()  # mpm.follow.Carried: points of its surface; without them no extents are recorded
     heat: HeatMethod = HeatMethod()
     scale: float = 1.0  # physical seconds a second of the run (mpm.scene.scaling)
-    turns: tuple = ()  # times at which a source jumps [s]
+    turns: tuple = ()  # times at which a source, or what course has, jumps [s]
     watch: Any = None  # what to record: mpm.observe.Watch
     meeting: Any = None  # mpm.contact.meeting.Meeting, or None
+    course: Any = None  # mpm.contact.course.Course: what of it changes over time, or None
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
@@ -171,6 +172,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
 
 def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: float, look) -> Outcome:
     """Advance to the output time `end`; from within the interval where the run was cut there."""
+    if scene.course is not None:
+        scene.course.set(clock.time, 0.0)
     if scene.implicit is not None:
         return scene.implicit.advance(scene, clock, guards, work, end, warm_bodies, recorder, look)
     cut = clock.parts > 0

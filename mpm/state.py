@@ -195,6 +195,21 @@ class Source(NamedTuple):
     law: Any
 
 
+class Ramp(NamedTuple):
+    """A load that acts from the start to the end."""
+
+    time: float  # to full load [s]
+
+
+class Within(NamedTuple):
+    """A load that begins or ends within the run."""
+
+    time: float  # to full load from the beginning on [s]
+    begin: float  # [s]
+    end: float  # [s]
+    past: np.ndarray  # (1,) share of the first impulse of a block of steps that acts before the block (mpm.contact.course)
+
+
 class Load(NamedTuple):
     """Nominal tractions on parts of a body's surface, and a drag (integrate/traction.py)."""
 
@@ -203,7 +218,7 @@ class Load(NamedTuple):
     F: np.ndarray  # (N, D, D) deformation gradient of the particles that carry a force
     loaded: np.ndarray  # (N,) whether a particle carries a force
     t: np.ndarray  # (N,) time of the particle [s]
-    ramp: float  # time to full load [s]
+    ramp: Any  # Ramp or Within
     rate: float  # drag: -rate m v [1/s]
     scale: float  # of chunk.S: 1, or 1/(sum w d^2) with the MLS gradient [1, 1/m2]
 

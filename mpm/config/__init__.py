@@ -25,6 +25,7 @@ Further files
     programmes        temperatures over time
     rules_chart       rules of `chart:`
     rules_fit         rules for named parameters and for what is fitted
+    rules_forces      rules for gravity and loads
     rules_frame       rules of `method.frame`
     rules_mechanics   rules of `method.mechanics`
     rules_output      rules for the output

@@ -6,8 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import create_model, model_validator
 
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
-from mpm.config.programmes import Beta, EmissivityProgramme, FluxProgramme, Moment, Programme
-from mpm.config.quantities import Friction
+from mpm.config.programmes import Beta, EmissivityProgramme, FluxProgramme, FrictionProgramme, Moment, Programme
 
 Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral", "inner", "outer"], Choice()]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
@@ -114,11 +113,22 @@ class WallHeat(Exchange):
     temperature: Programme = doc(description="temperature of the wall; may change over time")
 
 
-class Face(Kind):
-    """It acts as a mirror, `slip` or `stick`, on bodies that start at it, or as `contact`, by the true gap; what meets it feels `friction`."""
+Lasting: Any = create_model("Lasting", __base__=Kind, __module__=__name__, **MOMENTS)
+
+
+class Face(Lasting):
+    """It acts as a mirror, `slip` or `stick`, on bodies that start at it, or as `contact`, by the true gap; what meets it feels `friction`.
+
+    Before `from` and after `until` nothing is held along it, rubbed or heated; nothing ever passes through it.
+    """
 
     acts: ClassVar[str]
     heat: WallHeat | None = doc(None, description="heat that the wall exchanges with what touches it")
+
+    @model_validator(mode="after")
+    def lasts(self) -> "Face":
+        """It ends after it began."""
+        return ended(self)
 
 
 class Slip(Face):
@@ -142,7 +152,7 @@ class Contact(Face):
 
     kind: ClassVar[str] = "contact"
     acts: ClassVar[str] = "contact"
-    friction: Friction = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches")
+    friction: FrictionProgramme = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches; may change over time")
 
 
 WALLS: tuple[type[Kind], ...] = (Slip, Stick, Contact)

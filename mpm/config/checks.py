@@ -9,6 +9,7 @@ from typing import Any
 
 from mpm.config import rules_chart as charting
 from mpm.config import rules_fit as fitting
+from mpm.config import rules_forces as forces
 from mpm.config import rules_frame as framing
 from mpm.config import rules_mechanics as steps
 from mpm.config import rules_output as output
@@ -86,7 +87,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.surface_side, each("surfaces")),
     (scene.surface_twice, each("surfaces")),
     (scene.surface_names, once),
-    (scene.load, each("loads")),
+    (forces.load, each("loads")),
     (within.source, each("sources")),
     (within.formula, each("sources")),
     (within.exact, once),
@@ -96,7 +97,7 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (tools.motion, each("tools")),
     (tools.met, output.observables),
     (scene.mechanics, once),
-    (scene.gravity, once),
+    (forces.gravity, once),
     (scene.scaling, once),
     (output.clock, once),
     (output.probe, output.probes),

@@ -4,7 +4,8 @@ from pydantic import model_validator
 
 from mpm.config.base import Model, doc, problem
 from mpm.config.boundary import Spell, ended
-from mpm.config.quantities import Exchange, Friction
+from mpm.config.programmes import FrictionProgramme
+from mpm.config.quantities import Exchange
 
 
 class Nothing(Model):
@@ -12,10 +13,13 @@ class Nothing(Model):
 
 
 class Pair(Spell):
-    """How two bodies meet. A pair that is not named slides without friction and passes heat without resistance."""
+    """How two bodies meet. A pair that is not named slides without friction and passes heat without resistance.
+
+    Before `from` and after `until` it slides without friction and passes no heat.
+    """
 
     between: tuple[str, ...] = doc(description="two names under bodies", min_length=2, max_length=2)
-    friction: Friction = doc(0.0, description="coefficient of friction; .inf holds as stick does")
+    friction: FrictionProgramme = doc(0.0, description="coefficient of friction; .inf holds as stick does; may change over time")
     stick: Nothing | None = doc(None, description="no sliding while they touch; they may part")
     welded: Nothing | None = doc(None, description="one body to motion, for ever")
     conductance: Exchange | None = doc(

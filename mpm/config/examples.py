@@ -93,6 +93,7 @@ FIELDS: dict[str, Any] = {
     "Ring.inner": "10 mm",
     "Ring.outer": "20 mm",
     "Polygon.vertices": [[0, 0], ["20 mm", 0], ["10 mm", "10 mm"]],
+    "SineAcceleration.amplitude": "1 m/s**2",
     "Tool.shape": BOX,
     "MaterialPoint.strain": {"zz": -0.01},
     "Material.elastic": HENCKY,

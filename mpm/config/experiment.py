@@ -22,7 +22,7 @@ from mpm.config.model import Which
 from mpm.config.numerics import Clock, Grid, Method
 from mpm.config.output import Exact, Output
 from mpm.config.parameters import Named
-from mpm.config.quantities import Acceleration
+from mpm.config.programmes import Gravity
 from mpm.config.sources import Source
 from mpm.config.stability import Stability
 from mpm.config.sweep import Sweep
@@ -45,7 +45,7 @@ class Experiment(Model):
     walls: dict[str, Wall] = doc({}, description="walls of the domain by side; slip unless given")
     contacts: tuple[Pair, ...] = doc((), description="pairs of bodies that meet; those not named slide without friction and conduct without resistance")
     tools: dict[str, Tool] = doc({}, description="rigid bodies that move as they are told, by name")
-    gravity: tuple[Acceleration, ...] | None = doc(None, description="acceleration of gravity, one number a direction")
+    gravity: tuple[Gravity, ...] | None = doc(None, description="acceleration of gravity, one entry a direction; each may change over time")
     loads: tuple[Load, ...] = doc((), description="tractions on bodies that move, and drag")
     loading: tuple[Stage, ...] = doc((), description="what is prescribed to a material point (grid.dimension 0), stage by stage")
     time: Clock = doc(description="when the run ends and how it steps")

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import model_validator
 
 from mpm.config.base import Model, doc, problem
-from mpm.config.boundary import Side
+from mpm.config.boundary import Side, Spell, ended
 from mpm.config.quantities import Pressure, Quantity
 
 Ramp = Annotated[float, Quantity("s", "ramp", least=0)]
@@ -17,7 +17,7 @@ class Traction(Model):
     """A force by area of the undeformed surface, that keeps its direction as the body deforms."""
 
     nominal: tuple[Pressure, ...] = doc(description="force by reference area, one number a direction")
-    ramp: Ramp = doc(0.0, description="time to full load, of which 3 s^2 - 2 s^3 acts at s = t/ramp; at once unless given")
+    ramp: Ramp = doc(0.0, description="time to full load, of which 3 s^2 - 2 s^3 acts at s = t/ramp, t from when it begins; at once unless given")
 
 
 class Drag(Model):
@@ -26,13 +26,18 @@ class Drag(Model):
     rate: Rate = doc(description="rate at which free motion dies out; twice the slowest frequency is critical")
 
 
-class Load(Model):
+class Load(Spell):
     """What acts on a body, or on a part of its surface chosen by its outward normal at the start."""
 
     of: str = doc(description="a name under bodies")
     side: Side = doc("all", description="where the traction acts, by the outward normal at the start")
     traction: Traction | None = doc(None, description="force by reference area")
     drag: Drag | None = doc(None, description="force against the motion of the whole body")
+
+    @model_validator(mode="after")
+    def lasts(self) -> "Load":
+        """It ends after it began."""
+        return ended(self)
 
     @model_validator(mode="after")
     def loads(self) -> "Load":

@@ -101,4 +101,6 @@ def programme(quantity: Quantity) -> Any:
 Programme = programme(Quantity("K", "temperature", above=0))
 Beta = programme(Quantity("W/m**2/K", "heat-transfer coefficient", least=0, infinite=True))
 FluxProgramme = programme(Quantity("W/m**2", "heat flux"))
+FrictionProgramme = programme(Quantity("", "coefficient of friction", least=0, infinite=True))
+Gravity = programme(Quantity("m/s**2", "acceleration"))
 EmissivityProgramme = programme(Quantity("", "emissivity", least=0, most=1))

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from mpm.config.boundary import spell
 from mpm.config.explain import Finding
 from mpm.config.partial import Unknown
 from mpm.config.rules_scene import moves
@@ -68,6 +69,9 @@ def frame_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     if experiment.method.frame == "total" and getattr(item, "heat", None) is not None:
         said = "walls exchange no heat in the total frame: what lies on one exchanges through its own surface"
         yield Finding(("walls", side, item.kind, "heat"), said, ["an entry under surfaces", UPDATED], on_key=True)
+    if experiment.method.frame == "total" and item.acts == "stick" and spell(item) != (0.0, float("inf")):
+        said = "what the total frame holds at a wall it holds from the start to the end"
+        yield Finding(("walls", side, item.kind), said, ["no from and no until", UPDATED], on_key=True)
     if experiment.method.frame == "total" and item.acts == "contact":
         yield Finding(("walls", side), "the total frame has no contact yet: it holds what lies on a wall at the start", ["slip", "stick", UPDATED], on_key=True)
 

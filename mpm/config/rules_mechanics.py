@@ -65,7 +65,7 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
 
 def mechanics_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     """Of a wall."""
-    if asked(experiment) and known(lambda: item.acts == "contact" and 0 < item.friction < float("inf")):
+    if asked(experiment) and known(lambda: item.acts == "contact" and item.friction not in (0.0, float("inf"))):
         said = "implicit mechanics knows contact without friction, or without sliding"
         yield Finding(("walls", side, item.kind, "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
 

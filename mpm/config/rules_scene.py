@@ -204,24 +204,6 @@ def surface_names(experiment: Any) -> Iterator[Finding]:
             yield Finding(("surfaces", index, "name"), "two surfaces have the same name", "a name of its own", given=item.name)
 
 
-def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
-    """The body is there and moves, the traction has the grid's directions, the side exists."""
-    known, dimension = experiment.bodies, experiment.grid.dimension
-    if item.of not in known:
-        yield Finding(("loads", index, "of"), "there is no such body", list(known), near(item.of, known), given=item.of)
-        return
-    name = known[item.of].material
-    if dimension == 0:
-        yield Finding(("loads", index), "a material point has no surface to load", "loading: [{stress: {zz: ...}}]", on_key=True)
-    elif name in experiment.materials and experiment.materials[name].elastic is None:
-        yield Finding(("loads", index), f"{name!r} has no elastic law, so the body cannot move", f"an elastic section in materials.{name}", on_key=True)
-    elif item.traction is not None:
-        yield from vector(experiment, ("loads", index, "traction", "nominal"), item.traction.nominal, "the traction")
-        if item.side not in SURFACE_SIDES[dimension]:
-            sides = SURFACE_SIDES[dimension]
-            yield Finding(("loads", index, "side"), f"there is no such side in dimension {dimension}", list(sides), near(item.side, sides), given=item.side)
-
-
 def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     """Two bodies that are there and are not named together elsewhere; of bodies that do not move only heat can be said."""
     known, at = experiment.bodies, ("contacts", index, "between")
@@ -235,8 +217,9 @@ def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         yield Finding(at, "this pair is named before", "one entry a pair", on_key=True)
     elif moves(experiment):
         for key in ("from", "until"):
-            if getattr(item, key):
-                yield Finding(("contacts", index, key), "bodies that move meet where their motion brings them together", "no from and no until", on_key=True)
+            if getattr(item, key) and item.welded is not None:
+                said = "what is welded is one body to motion, for ever"
+                yield Finding(("contacts", index, key), said, "stick, which may begin and end, or no from and no until", on_key=True)
     else:
         for key in ("friction", "stick", "welded"):
             if getattr(item, key) not in (None, 0.0):
@@ -265,6 +248,9 @@ def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     sides = WALL_SIDES[experiment.grid.dimension]
     if side not in sides:
         yield Finding(("walls", side), f"there is no such wall in dimension {experiment.grid.dimension}", list(sides), near(side, sides), on_key=True)
+    elif spell(item) != (0.0, math.inf) and item.heat is None and item.friction == 0.0:
+        said = "a side of the domain stays where it is: without friction and heat it is the same before and after"
+        yield Finding(("walls", side, item.kind), said, "heat, or friction of a contact, or no from and no until", on_key=True)
     elif item.heat is not None and not heats(experiment):
         said = "no body has heat, so nothing can be exchanged"
         yield Finding(("walls", side, item.kind, "heat"), said, "a heat section in the material of a body", on_key=True)
@@ -289,10 +275,6 @@ def scaling(experiment: Any) -> Iterator[Finding]:
         yield Finding(("time", "scale"), "nothing here has inertia, so time scaling would do nothing", "no scale", on_key=True)
     elif experiment.time.scale != 1 and experiment.exact is not None:
         yield Finding(("time", "scale"), "an exact solution is not scaled in time", "no scale, or no exact", on_key=True)
-
-
-def gravity(experiment: Any) -> Iterator[Finding]:
-    yield from vector(experiment, ("gravity",), experiment.gravity, "gravity")
 
 
 def method(experiment: Any) -> Iterator[Finding]:

@@ -7,7 +7,8 @@ from pydantic import create_model, model_validator
 from mpm.config.base import Model, doc, one_of, problem
 from mpm.config.bodies import Ball, Box, Cylinder, Polygon, Spin
 from mpm.config.boundary import WallHeat
-from mpm.config.quantities import AngularVelocity, Coordinate, Friction, Quantity, Velocity
+from mpm.config.programmes import FrictionProgramme
+from mpm.config.quantities import AngularVelocity, Coordinate, Quantity, Velocity
 
 Moment = Annotated[float, Quantity("s", "time", least=0)]
 Force = Annotated[float, Quantity("N", "force")]
@@ -73,7 +74,7 @@ class Tool(Spell):
 
     shape: Shape = doc(description="what the tool fills at the start")
     motion: Motion = doc(Motion(), description="stands still unless given")
-    friction: Friction = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches")
+    friction: FrictionProgramme = doc(0.0, description="coefficient of friction; .inf lets nothing slide while it touches; may change over time")
     heat: WallHeat | None = doc(None, description="heat that the tool exchanges with what touches it")
 
     @model_validator(mode="after")

@@ -16,6 +16,7 @@ Fails when   a contact is narrower than a cell (force right, pressure not); a fl
 
 Further files
     block      the arrays that a run works on, and one block of its steps by whichever kernel it needs
+    course     what changes over time beside heat
     conduct    one implicit heat step of bodies that touch
     distance   signed distances of tools and their gradients
     drive      how tools move as they are told

@@ -44,8 +44,13 @@ def work_arrays(scene) -> Work:
 
 def reach(scene, clock, span: float) -> float:
     """How far a particle or a tool may move within `span` [m]."""
-    speed, g = math.sqrt(max(clock.reports[:, SPEED])), float(np.linalg.norm(scene.gravity))
+    speed, g = math.sqrt(max(clock.reports[:, SPEED])), heaviest(scene)
     return AHEAD * max(speed + g * span, scene.meeting.pace(clock.time, span)) * span
+
+
+def heaviest(scene) -> float:
+    """No gravity of the run is larger [m/s2]."""
+    return scene.course.heaviest if scene.course is not None and scene.course.gravity else float(np.linalg.norm(scene.gravity[0]))
 
 
 def clear(scene, clock, dt: float, steps: int) -> int:
@@ -65,8 +70,12 @@ def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
     if clock.touching and met.unforeseen is not None:
         return outcome(met.unforeseen[0], time=clock.time * scene.scale, step=clock.steps, detail=f"({scene.names[met.unforeseen[1]]})")
     scene.order.refresh()
-    kick, clock.lag = clock.lag + 0.5 * dt, 0.5 * dt
+    kick, before, clock.lag = clock.lag + 0.5 * dt, clock.lag, 0.5 * dt
+    if scene.course is not None:
+        scene.course.lay(scene, clock.time, dt, steps, before / kick)
     astray = push(scene, clock, work, float(dt), float(kick), steps, float(dt), clock.reports)
+    if scene.course is not None:
+        clock.worked += scene.course.work(scene)
     travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:

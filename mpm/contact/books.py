@@ -29,7 +29,7 @@ def series(met, axes: tuple[str, ...], since: float, time: float):
             if met.pairs[a, b] >= 0:
                 area = 0.5 * part * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
                 yield from told(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
-            if met.links[a, b] > 0:
+            if met.passing[a, b]:
                 yield f"heat_{both}", met.passed[a, b]
     for gathered in (touching.pushed, touching.turned, touching.spread, touching.deepest):
         gathered[:] = 0.0

@@ -29,6 +29,8 @@ def in_sync(scene, clock, work):
     lagging = [(body.particles.v.copy(), body.particles.C.copy()) for body in scene.bodies]
     if scene.order.sliced:
         scene.order.refresh()
+    if scene.course is not None:
+        scene.course.lay(scene, clock.time, STILL * clock.lag, 1, 1.0)
     changed = scene.bodies, () if scene.meeting is None else scene.meeting.touching
     kept = {path: array.copy() for path, array in arrays(changed).items()}
     reach, dt, reports = scene.order.reach.copy(), 2 * clock.lag, clock.reports.copy()

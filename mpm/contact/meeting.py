@@ -46,6 +46,7 @@ class Meeting:
     drive: Drive | None = None
     touching: Touching = field(init=False)
     passed: np.ndarray = field(init=False)  # (B, B) heat that a body took in from each other since the start [J]
+    passing: np.ndarray = field(init=False)  # (B, B) whether heat ever passes between two bodies; links may be 0 for a while (mpm.contact.course)
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
     told: float = field(default=0.0, init=False)  # up to when impulses were recorded [s]
@@ -65,7 +66,7 @@ class Meeting:
         self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
                                  np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
                                  np.array([P // 4 + 64]))  # fmt: skip
-        self.passed = np.zeros((B, B))
+        self.passed, self.passing = np.zeros((B, B)), self.links > 0
 
     @property
     def tool_names(self) -> tuple[str, ...]:

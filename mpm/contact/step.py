@@ -72,7 +72,7 @@ class Pace(NamedTuple):
 def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
     """As explicit.advance with the nodes of every field."""
     shape, fields, dt, steps, first = extents(method.space), len(touching.walls), pace.dt, pace.steps, field_buffers(grids, 0)
-    chunk, skin = scratch(method, bodies, first.nodes), new_skin(gravity.shape[0], touching.first)
+    chunk, skin = scratch(method, bodies, first.nodes), new_skin(gravity.shape[1], touching.first)
     for f in range(fields):
         empty(shape, grids.boxes[f, 0])
         empty(shape, grids.boxes[f, 1])
@@ -81,7 +81,7 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
         acts = pace.kick if step == 0 else dt
         if not opening:
             for f in range(fields):
-                update(method, field_buffers(grids, f), now, touching.walls[f], gravity, acts)
+                update(method, field_buffers(grids, f), now, touching.walls[f], gravity[step % len(gravity)], acts)
             if fields == 1:
                 sharpen(method.scheme, method, bodies, chunk, first, now, touching.walls[0])
             place_tools(touching.tools, step, pace.ahead, acts)

@@ -2,6 +2,7 @@
 
 at(programme, t)      value; at a jump that after it        during(programme, t)   what holds from t on to the next jump: without jumps
 bounds(programme) -> (lowest, highest)                      longest(programme)     no step may be longer and still see it [s]
+before(programme, t)                   what holds up to t
 turns(programme) -> times of its jumps [s]                  spell(programme, begin, end)   the same within [begin, end), nothing outside
 """
 
@@ -46,6 +47,13 @@ def during(programme, t: float):
     if not isinstance(programme, Parts):
         return programme
     return programme.parts[sum(jump <= t * (1 + SAME) for jump in programme.jumps)]
+
+
+def before(programme, t: float):
+    """What holds up to t from the jump before it."""
+    if not isinstance(programme, Parts):
+        return programme
+    return programme.parts[sum(jump < t * (1 - SAME) for jump in programme.jumps)]
 
 
 def turns(programme) -> tuple[float, ...]:

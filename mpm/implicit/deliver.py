@@ -10,7 +10,7 @@ from mpm.implicit.assemble import elastic_b, increment, sign, trial
 from mpm.integrate.given_source import push_at
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
-from mpm.integrate.traction import share
+from mpm.integrate.traction import share, within
 from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED
@@ -81,7 +81,7 @@ def loads_load(source, body, nodes, push, dt):
     for p in range(nodes.w.shape[0]):
         if not source.loaded[p]:
             continue
-        now = share(source.t[p] + dt, source.ramp)
+        now = share(source.ramp, source.t[p] + dt, 1.0)
         for k in range(nodes.w.shape[1]):
             for c in range(D):
                 force = source.force[p, c] * nodes.w[p, k]
@@ -108,25 +108,25 @@ def loads_both(source, body, nodes, push, dt):
 
 
 @role
-def drag_rate(source):
-    """[1/s]"""
+def drag_rate(source, dt):
+    """In a step of dt [1/s]."""
     raise TypeError(f"no implicit mechanics with {type(source).__name__}")
 
 
 @drag_rate.register(NoSource)
 @drag_rate.register(Given)
-def drag_rate_no_source_or_given(source):
+def drag_rate_no_source_or_given(source, dt):
     return 0.0
 
 
 @drag_rate.register(Load)
-def drag_rate_load(source):
-    return source.rate
+def drag_rate_load(source, dt):
+    return source.rate * within(source.ramp, source.t[0] + 0.5 * dt, 0.0)
 
 
 @drag_rate.register(Both)
-def drag_rate_both(source):
-    return source.load.rate
+def drag_rate_both(source, dt):
+    return drag_rate(source.load, dt) + drag_rate(source.given, dt)
 
 
 @role

@@ -111,6 +111,8 @@ def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
 
 def one_step(scene, clock, work, dt: float, warm) -> Outcome:
     """Heat, then mechanics; the other way round where heat passes by touch, as motion says who touches."""
+    if scene.course is not None:
+        scene.course.lay(scene, clock.time, dt, 1, 0.0)
     later = scene.meeting is not None and scene.meeting.warms
     now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     found = outcome(COMPLETED) if later else warm(scene, clock, work, clock.time, dt, now)
@@ -152,11 +154,11 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     """One step of dt; particles move only where it is ok."""
     how, told, body = scene.implicit, clock.told, scene.bodies[0]
     lam, mu = stiffest(body)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity, mu)
-    pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source)
+    nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity[-1], mu)
+    pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
-    skin = new_skin(len(scene.gravity), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
+    skin = new_skin(directions(scene.space), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
     lay_skins(scene.space, scene.bodies, skin)
     pushed = may_touch(scene.space, skin, how.stops, STIFFNESS * (lam + 2 * mu) / scene.space.h)
     answer = minimise(Problem(scene.space, body, nodes, pushed, dt, drag), dt * nodes.v)
@@ -171,6 +173,8 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         report[STEP] = 0
         return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
     clock.gather(dt)
+    if scene.course is not None:
+        clock.worked += scene.course.work(scene)
     told["work"] += abs(float(np.sum(nodes.push * answer.u)))
     kinetic = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)) / max(told["work"], 1e-300)
     told["kinetic_over_work"] = kinetic

@@ -35,7 +35,7 @@ from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, pick_up, spread
 def advance(method, bodies, buffers, walls, gravity, dt, kick, steps, begun, reports):
     """`steps` steps of `dt` of all bodies on one grid, after `begun` steps of the run. kick: how long the impulse of the first acts (contact/insync.py).
 
-    walls (3, 2) kinds, gravity (D,), reports (bodies, REPORT): see particle_update.py. Returns early where a particle fails.
+    walls (3, 2) kinds, gravity (1 or steps, D) [m/s2], reports (bodies, REPORT): see particle_update.py. Returns early where a particle fails.
     """
     shape, chunk, sparse = extents(method.space), scratch(method, bodies, buffers.nodes), True
     empty(shape, buffers.boxes[0])
@@ -43,7 +43,7 @@ def advance(method, bodies, buffers, walls, gravity, dt, kick, steps, begun, rep
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2  # variables all: Numba compiles a callee once for every literal argument
         if not opening:
-            on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, (dt, kick if step == 0 else dt), reports)
+            on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity[step % len(gravity)], (dt, kick if step == 0 else dt), reports)
         moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
         if not pass_all(method, bodies, chunk, buffers, moment, reports):
             return

@@ -123,7 +123,8 @@ def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bo
         for step in range(-1, steps):
             opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
             if not opening:
-                nodal_phase(method, bodies, buffers, now, sparse, scene.walls, scene.gravity, (dt, kick if step == 0 else dt), slabs.reports[M])
+                gravity = scene.gravity[step % len(scene.gravity)]
+                nodal_phase(method, bodies, buffers, now, sparse, scene.walls, gravity, (dt, kick if step == 0 else dt), slabs.reports[M])
             share_out(reach, slabs)
             moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
             crew.work(order, lambda which, m=moment: pass_slabs(method, bodies, slabs, which, buffers, m, False))

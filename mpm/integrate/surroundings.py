@@ -146,6 +146,8 @@ class Surroundings:
             return
         part = np.minimum(wall.touched[s] / dt, 1.0)
         first, last, beta = self.met(wall, start, dt)
+        if beta == 0.0:
+            return
         beta, free = part * beta, 1.0 - part
         both = free * surface.beta[s] + beta
         weight = beta / np.maximum(both, 1e-300)

@@ -25,7 +25,7 @@ from mpm.heat.exchange import STEFAN_BOLTZMANN
 from mpm.heat.setting import conditions
 from mpm.integrate.strain import RATE, SPEED, STRAIN, SWELL
 from mpm.materials import Condition, Constant, HenckyWarm, moduli, value, warmed
-from mpm.sources import Both
+from mpm.sources import acting
 from mpm.state import Expansion, GridHeating, Heating, Load, NoExchange, Radiation, Setting, Thermal
 
 WAVE, CONDUCTION, EXCHANGE, PACE, DRAG, SETTING = 0.5, 0.4, 2.0, 0.15, 0.5, 0.05
@@ -68,9 +68,9 @@ def limits(space, D, bodies, reports) -> Limits:
             keep(mechanical, "advection", 0.5 * h / np.sqrt(report[SPEED]))
         if report[RATE] > 0:
             keep(mechanical, "velocity gradient", 0.25 / report[RATE])
-        load = body.source.load if isinstance(body.source, Both) else body.source
-        if isinstance(load, Load) and load.rate > 0:
-            keep(mechanical, "drag", DRAG / load.rate)
+        rate = sum(load.rate for load in acting(body.source) if isinstance(load, Load))
+        if rate > 0:
+            keep(mechanical, "drag", DRAG / rate)
         if isinstance(body.thermal, Thermal):
             kappa, alpha = conductance(body.thermal)
             J = max(report[SWELL], float(np.max(body.particles.J)))

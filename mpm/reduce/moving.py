@@ -77,7 +77,7 @@ def prism(experiment: Any, sides: dict) -> Offer | str:
     data["grid"] |= {"dimension": len(kept), "size": pick(experiment.grid.size)}
     data["bodies"][name]["shape"] = {"box": {"lower": pick(body.shape.lower), "upper": pick(body.shape.upper)}}
     data["bodies"][name]["velocity"] = pick(body.velocity) if body.velocity else None
-    data["gravity"] = pick(experiment.gravity) if experiment.gravity else None
+    data["gravity"] = pick(data["gravity"]) if experiment.gravity else None
     data["output"] |= {"probes": {probe: pick(x) for probe, x in experiment.output.probes.items()}, "observables": cut_observables(experiment)}
     if "offset" in data["method"]:
         data["method"]["offset"] = pick(experiment.method.offset)
@@ -128,7 +128,7 @@ def revolved(experiment: Any) -> Offer | str:
     if body.shape.kind == "cylinder":
         shape = {"base": [0.0, centre[2]], "radius": body.shape.radius, "height": body.shape.height}
     data["bodies"][name] |= {"shape": {body.shape.kind: shape}, "velocity": [0.0, body.velocity[2]] if body.velocity else None}
-    data["gravity"] = [0.0, experiment.gravity[2]] if experiment.gravity else None
+    data["gravity"] = [0.0, data["gravity"][2]] if experiment.gravity else None
     probes = {probe: [math.hypot(x[0] - centre[0], x[1] - centre[1]), x[2]] for probe, x in experiment.output.probes.items()}
     data["output"] |= {"probes": probes, "observables": cut_observables(experiment)}
     if "offset" in data["method"]:

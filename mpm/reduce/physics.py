@@ -159,6 +159,7 @@ def no_heat(experiment: Any, left: float) -> Offer | str:
     for wall in data["walls"].values():
         for kind in wall.values():
             kind["heat"] = None
+            kind |= {} if kind.get("friction") or "stick" in wall else {"from": 0.0, "until": None}  # then it says nothing any more
     error = 0.0 if all(map(deaf, scales(experiment).values())) else None
     return Offer("no heat", "heat: motion at the temperatures of the start", loaded(data, experiment), error)
 

@@ -7,6 +7,7 @@ contents    what each cell holds of a shape, and one particle a cell
 Further files
     build              from a validated experiment to a scene of moving bodies
     conventions        what a dimension brings
+    course             what a config lets change over time beside heat
     cut_boundary       plane regions on a grid
     exchange           surfaces of a config
     fracture_surface   faces between the particle cells of a body that may tear
@@ -29,6 +30,7 @@ Further files
     tools              tools of a config
     total              bodies of a config in the total frame
     traction           loads of a config to the run-time Load of a body
+    weight             gravity of a config as one number a direction
 """
 
 from mpm.scene.contents import CutCells

@@ -15,6 +15,7 @@ from mpm.error import Motion
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
+from mpm.scene.course import course
 from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit
@@ -29,6 +30,7 @@ from mpm.scene.sources import moments, sourced
 from mpm.scene.tools import drive
 from mpm.scene.total import total_bodies, wall_kinds
 from mpm.scene.traction import loaded
+from mpm.scene.weight import start
 from mpm.simulation import HeatMethod, Scene
 from mpm.state import (
     PAD,
@@ -192,6 +194,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
     for body, reference in zip(bodies, references, strict=False):
         begin_nodes(space, body, reference)
     met = None if references else meeting(meets, space, bodies, surroundings, names, SIDES[experiment.grid.dimension], drive(experiment))
+    changes = course(experiment, met, walls, bodies, references)
     return Scene(
         space=space,
         gradient=gradient_operator(experiment),
@@ -204,7 +207,8 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         outlines=outlines,
         walls=walls,
         meeting=met,
-        gravity=np.array(experiment.gravity if experiment.gravity is not None else [0.0] * experiment.grid.directions),
+        course=changes,
+        gravity=np.array([start(experiment)]),
         blend=blend,
         affine=affine,
         sharp=sharp,
@@ -216,7 +220,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
-        turns=moments(experiment),
+        turns=(*moments(experiment), *(changes.turns if changes is not None else ())),
         implicit=implicit(experiment, space, bodies, met, times),
         watch=watch(experiment, exact),
     )

@@ -66,7 +66,9 @@ def hot_walls(experiment, sides) -> list[HotWall]:
     found = []
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
-        if heat is not None and most(beta := programme(heat.beta)) > 0:
+        if heat is not None and most(programme(heat.beta)) > 0:
+            wall = experiment.walls[side]
+            beta = spell(programme(heat.beta), getattr(wall, "from"), wall.until)
             found.append(HotWall(number // 2, number % 2, beta, programme(heat.temperature)))
     hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and most(programme(tool.heat.beta)) > 0]
     return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name) for name, heat in hot]

@@ -19,6 +19,7 @@ from dataclasses import asdict, dataclass
 
 from mpm.scene.scales import Scales, scales
 from mpm.scene.scaling import FROUDE
+from mpm.scene.weight import heaviest
 
 SMALL, LARGE = 0.1, 10.0
 
@@ -92,7 +93,7 @@ def heat(experiment, one: Scales) -> list[Group]:
 
 def strains(experiment, one: Scales) -> dict[str, float]:
     """Upper estimates of strain by cause: gravity and tractions put on at once, a stop from the starting speed, thermal expansion."""
-    g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
+    g = heaviest(experiment)
     return {
         "gravity": 2 * one.density * g * one.height / one.softest * one.lever,
         "impact": one.speed / math.sqrt(one.softest / one.density),
@@ -139,7 +140,7 @@ def motion(experiment, one: Scales) -> list[Group]:
 
 def loads(experiment, one: Scales) -> tuple[float, float]:
     """Upper estimates of the stress over the yield stress: of shear over M, of pressure over p0 M. Weight and tractions act at once."""
-    g = math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
+    g = heaviest(experiment)
     stress = 2 * one.density * g * one.height * one.lever + 2 * one.traction + one.density * one.wave * one.speed + one.thermal_stress
     return 2 * stress / one.M[0], 2 * stress / (one.M[0] * one.p0[0])
 

@@ -27,7 +27,8 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
     present |= {f"load: {kind}" for kind in LOADS for entry in experiment.loads if getattr(entry, kind) is not None}
     present |= {f"source: {kind}" for kind in SOURCES for entry in experiment.sources if getattr(entry, kind) is not None}
-    present |= {"gravity"} if experiment.gravity is not None else set()
+    steady = all(isinstance(one, float) for one in experiment.gravity or ())
+    present |= {"gravity" if steady else "gravity: over time"} if experiment.gravity is not None else set()
     present |= set(pairs(experiment)) | {f"tool: {name}, {told(tool)}" for name, tool in experiment.tools.items()}
     said = {text.split(":")[0] for text in present}
     parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "source", "load", "gravity")
@@ -48,7 +49,7 @@ def pairs(experiment) -> list[str]:
     found = []
     for two in combinations(moving, 2):
         pair, warm = known.get(frozenset(two)), all(experiment.materials[experiment.bodies[name].material].heat is not None for name in two)
-        rubs = f"rub ({pair.friction:g})" if pair and pair.friction else "slide"
+        rubs = "slide" if not pair or not pair.friction else f"rub ({pair.friction:g})" if isinstance(pair.friction, float) else "rub (over time)"
         slides = "are welded" if pair and pair.welded else "do not slide" if pair and pair.stick else rubs
         free = pair is None or pair.conductance in (None, math.inf)
         passes = "and pass heat freely" if free else f"and pass heat ({pair.conductance:g} W/m2K)" if pair.conductance else "without heat"

@@ -13,10 +13,13 @@ from mpm.boundary import CONTACT
 from mpm.contact.found import BODY
 from mpm.contact.meeting import Meeting
 from mpm.contact.skin import POINT
+from mpm.heat.programmes import at
+from mpm.scene.exchange import programme
 from mpm.scene.menus import wall_kind
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.scene.tools import refuse_tools
+from mpm.scene.weight import both_ways
 
 AT = 1e-6  # cells: a body that starts nearer to a mirror is bonded to it
 SHARP = 0.3  # sine of the angle between two faces from which on their edge is a corner
@@ -56,7 +59,7 @@ def plan_meetings(experiment, sides) -> Meets:
             if side == "axis" or (acts != "contact" and gap <= AT):
                 walls[b, axis, upper] = kind
             elif acts == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
-                stops[b, axis, upper] = named.friction if named is not None else 0.0
+                stops[b, axis, upper] = rubbing(named.friction) if named is not None else 0.0
     fields = np.zeros(B, np.int64)
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
     for b in range(B):
@@ -132,7 +135,12 @@ def friction(pair) -> float:
     """Of an entry under `contacts`; none where a pair is not named."""
     if pair is None:
         return 0.0
-    return math.inf if pair.stick is not None else pair.friction
+    return math.inf if pair.stick is not None else rubbing(pair.friction)
+
+
+def rubbing(friction) -> float:
+    """A coefficient of friction at the start; mpm.contact.course goes on from there."""
+    return at(programme(friction), 0.0)
 
 
 def reach(experiment, name: str, low, high) -> np.ndarray:
@@ -140,14 +148,14 @@ def reach(experiment, name: str, low, high) -> np.ndarray:
     end, size = experiment.time.end, float(np.max(high - low))
     body, material = experiment.bodies[name], experiment.materials[experiment.bodies[name].material]
     speed = max(math.hypot(*(one.velocity or (0.0,))) + (spun(one) if len(experiment.bodies) > 1 else 0.0) for one in experiment.bodies.values())
-    g = np.array(experiment.gravity) if experiment.gravity is not None else np.zeros(len(low))
+    g = both_ways(experiment)
     loaded = any(load.traction is not None for load in experiment.loads if load.of == name)
     if g.any() and material.flow is not None:
         return np.full((len(low), 2), math.inf)
     swells = material.flow is not None or getattr(material.expansion, "kind", "") == "latched"
     stirred = g.any() or speed or loaded or material.expansion is not None or body.angular_velocity is not None
     shapes = (2.0 if swells else 0.5) * size if stirred else 0.0
-    return shapes + speed * end + 0.5 * end * end * np.maximum(0.0, np.stack([-g, g], axis=1))
+    return shapes + speed * end + 0.5 * end * end * g
 
 
 def spun(body) -> float:

@@ -18,6 +18,7 @@ from mpm.scene.exchange import most, programme, rates, robin
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.menus import acting
 from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.weight import strongest
 
 LATTICE = 4  # cells a direction of the quadrature that measures a body
 FLUSH = 1e-9  # of the domain: what is nearer to a side lies on it
@@ -164,7 +165,7 @@ def bearing(experiment, name: str) -> tuple[str, float]:
 
     3 (L/H)^2 of a cantilever, (L/H)^2/2 of a beam held at both ends, 3 (L/H)^2/4 of a round plate held at its rim, L the extent (radius) across.
     """
-    grid, gravity = experiment.grid, experiment.gravity
+    grid, gravity = experiment.grid, strongest(experiment)
     if gravity is None or not any(gravity) or grid.dimension == 0:
         return "", 1.0
     lower, upper = shape(experiment.bodies[name].shape, grid.dimension).bounds()
@@ -245,7 +246,7 @@ def exchanging(entry, area: float, high: float) -> list[Exchanging]:
 
 def along(experiment, extent: tuple[float, ...]) -> float:
     """Extent along gravity, the largest extent where there is none."""
-    gravity = experiment.gravity
+    gravity = strongest(experiment)
     return extent[int(np.argmax(np.abs(gravity)))] if gravity is not None and any(gravity) else max(extent)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm.config import boundary
 from mpm.records.variables import is_total, turn
+from mpm.scene.weight import strongest
 from mpm.state import Run
 from mpm.warned import warning
 
@@ -81,7 +82,17 @@ def surface(model, S: float):
     return model.model_copy(update={kind: exchange(getattr(model, kind), S) for kind in boundary.EXCHANGES})
 
 
+def wall(model, S: float):
+    rubs = {"friction": sooner(model.friction, S)} if "friction" in type(model).model_fields else {}
+    return changed(model, 1 / S, "from", "until").model_copy(update={"heat": exchange(model.heat, S)} | rubs)
+
+
+def pair(model, S: float):
+    return changed(changed(model, S, "conductance"), 1 / S, "from", "until").model_copy(update={"friction": sooner(model.friction, S)})
+
+
 def load(model, S: float):
+    model = changed(model, 1 / S, "from", "until")
     return model.model_copy(update={"traction": changed(model.traction, 1 / S, "ramp"), "drag": changed(model.drag, S, "rate")})
 
 
@@ -96,9 +107,10 @@ def hurried(experiment):
             "bodies": {name: changed(body, S, "velocity", "angular_velocity") for name, body in experiment.bodies.items()},
             "materials": {name: material(one, S) for name, one in experiment.materials.items()},
             "surfaces": tuple(surface(one, S) for one in experiment.surfaces),
-            "contacts": tuple(changed(pair, S, "conductance") for pair in experiment.contacts),
+            "contacts": tuple(pair(one, S) for one in experiment.contacts),
+            "gravity": experiment.gravity and tuple(sooner(one, S) for one in experiment.gravity),
             "loads": tuple(load(one, S) for one in experiment.loads),
-            "walls": {side: wall.model_copy(update={"heat": exchange(wall.heat, S)}) for side, wall in experiment.walls.items()},
+            "walls": {side: wall(one, S) for side, one in experiment.walls.items()},
             "time": changed(experiment.time, 1 / S, "end", "step").model_copy(update={"scale": 1.0}),
             "method": changed(experiment.method, 1 / S, "heat_step"),
             "output": output.model_copy(update={"snapshots": changed(output.snapshots, 1 / S, "every")}),
@@ -134,7 +146,7 @@ def physical(run: Run, experiment) -> Run:
     S = experiment.time.scale
     if S == 1:
         return run
-    found = validity(run, experiment.gravity)
+    found = validity(run, strongest(experiment))
     run.times = run.times * S
     kinetic = run.series["energy_kinetic"]
     run.series["energy_total"] = run.series["energy_total"] - kinetic + kinetic / S**2

@@ -7,7 +7,9 @@ import numpy as np
 from mpm.contact.distance import BALL, BOX, CYLINDER, POLYGON
 from mpm.contact.drive import Drive, Told
 from mpm.contact.tools import Tools
+from mpm.heat.programmes import at
 from mpm.scene.conventions import spin_tensor
+from mpm.scene.exchange import programme
 from mpm.scene.law import elastic_law
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, Shape, cut_quadrature, shape
@@ -31,7 +33,8 @@ def drive(experiment) -> Drive | None:
     V = max(1, *(len(corner) for _, _, _, corner in shapes))
     tools = Tools(
         kind=np.array([kind for kind, _, _, _ in shapes]), size=np.stack([size for _, _, size, _ in shapes]), corner=np.zeros((T, V, 2)),
-        corners=np.array([len(corner) for _, _, _, corner in shapes]), bound=np.zeros(T), mu=np.array([tool.friction for tool in experiment.tools.values()]),
+        corners=np.array([len(corner) for _, _, _, corner in shapes]), bound=np.zeros(T),
+        mu=np.array([at(programme(tool.friction), 0.0) for tool in experiment.tools.values()]),
         there=np.ones(T, np.bool_), centre=np.zeros((T, D)), turn=np.tile(np.eye(D), (T, 1, 1)), v=np.zeros((T, D)), spin=np.zeros((T, D, D)),
         force=np.zeros((T, D)), light=np.zeros(T), way=np.zeros((T, D)), shift=np.zeros((T, D)), path=np.zeros((MOST_STEPS + 1, T, D)),
         turns=np.zeros((MOST_STEPS + 1, T, D, D)), present=np.zeros((MOST_STEPS, T), np.bool_))  # fmt: skip

@@ -17,8 +17,8 @@ from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side, shape
 from mpm.scene.sources import sourced
-from mpm.scene.traction import one_ramp
-from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Surface, Thermal
+from mpm.scene.traction import one_course
+from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
 from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, new_nodes
 from mpm.total.step import courant_of
@@ -185,13 +185,13 @@ def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
     return found.T
 
 
-def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> tuple[np.ndarray, float, float]:
-    """(nodal forces at full load (n, D), or (0, D) without any; ramp; rate of the drag)."""
+def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> tuple[np.ndarray, Ramp | Within, float]:
+    """(nodal forces at full load (n, D), or (0, D) without any; their course; rate of the drag)."""
     D, entries = experiment.grid.directions, [entry for entry in experiment.loads if entry.of == name]
     tractions, drag = pulling(entries)
+    course = one_course(experiment, name)
     if not tractions:
-        return np.zeros((0, D)), 0.0, drag
-    ramps = one_ramp(experiment, name, tractions)
+        return np.zeros((0, D)), course, drag
     x, force = [], []
     for entry in tractions:
         pieces = on_side(surface.normal, entry.side)
@@ -202,4 +202,4 @@ def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> 
     load = weigh(space, np.concatenate(x), np.concatenate(force), n)
     for k in range(len(ghost)):
         load[image[k]] += sign[k] * load[ghost[k]]
-    return load, float(max(ramps)), drag
+    return load, course, drag

@@ -9,23 +9,41 @@ by the particles' points and volumes and by the pieces of surface; what force an
 face that is not flat acts at its pieces.
 """
 
+import functools
+import math
+
 import numpy as np
 
 from mpm.basis import inverse_moment
+from mpm.config.boundary import spell
 from mpm.scene.menus import pulling
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import on_side
-from mpm.state import Axisymmetric, Load, NoSource
+from mpm.sources import Both
+from mpm.state import Axisymmetric, Load, NoSource, Ramp, Within
 from mpm.transfer import uses_basis_gradient
 
 
-def one_ramp(experiment, name: str, tractions) -> set[float]:
-    """The ramp of the tractions on one body; SceneError where they have several."""
-    ramps = {entry.traction.ramp for entry in tractions}
-    if len(ramps) > 1:
-        said = f"the tractions on {name} have ramps of {', '.join(f'{ramp:g} s' for ramp in sorted(ramps))}: give them the same"
-        raise SceneError(("loads", experiment.loads.index(tractions[-1]), "traction"), said)
-    return ramps
+def course_of(entry) -> tuple[float, float, float]:
+    """(ramp, from, until) of a load."""
+    return entry.traction.ramp if entry.traction is not None else 0.0, *spell(entry)
+
+
+def ramp_of(ramp: float, begin: float, end: float) -> Ramp | Within:
+    """What a run makes of it."""
+    return Ramp(ramp) if begin == 0 and math.isinf(end) else Within(ramp, begin, end, np.zeros(1))
+
+
+def one_course(experiment, name: str) -> Ramp | Within:
+    """The course of all loads on one body; SceneError where they have several."""
+    entries = [entry for entry in experiment.loads if entry.of == name]
+    ramps = sorted({entry.traction.ramp for entry in entries if entry.traction is not None})
+    spells = {spell(entry) for entry in entries}
+    for said, several in ((f"ramps of {', '.join(f'{ramp:g} s' for ramp in ramps)}", ramps), ("several from and until", spells)):
+        if len(several) > 1:
+            at = ("loads", experiment.loads.index(entries[-1]), *(("traction",) if several is ramps else ()))
+            raise SceneError(at, f"the loads on {name} have {said}, which the total frame does not know: give them the same, or method.frame: updated")
+    return ramp_of(max(ramps, default=0.0), *next(iter(spells), (0.0, math.inf)))
 
 
 REACH, WHOLE, ROOM, FLAT = 8.0, 0.25, 0.75, 1e-6  # cells; share of the reach over which chi is 1; share of the body; of a cell
@@ -76,12 +94,24 @@ def faded(depth, reach: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def loaded(experiment, name: str, cut, space, gradient):
-    """The Load of one body; NoSource where nothing acts on it."""
+    """The Load of one body, Both of loads that begin, end or rise at different times; NoSource where nothing acts on it."""
     entries = [entry for entry in experiment.loads if entry.of == name]
     tractions, rate = pulling(entries)
     if not tractions and rate == 0:
         return NoSource()
-    ramps = one_ramp(experiment, name, tractions)
+    courses = sorted({course_of(entry) for entry in entries if entry.traction is not None})
+    courses += sorted({one for entry in entries if (one := course_of(entry))[1:] not in [known[1:] for known in courses]})
+    made = [one_load(experiment, name, cut, (space, gradient), entries, course, courses) for course in courses]
+    return functools.reduce(lambda rest, one: Both(one, rest), reversed(made))
+
+
+def one_load(experiment, name: str, cut, how, entries, course, courses) -> Load:
+    """The Load of the entries of one course; a drag goes with the first that lasts as it does."""
+    space, gradient = how
+    first = next(one for one in courses if one[1:] == course[1:]) == course
+    mine = [entry for entry in entries if (entry.traction is not None and course_of(entry) == course)]
+    tractions = pulling(mine)[0]
+    rate = pulling([entry for entry in entries if first and spell(entry) == course[1:]])[1]
     N, D = cut.centroid.shape
     force, dipole, radial = np.zeros((N, D)), np.zeros((N, D, D)), isinstance(space, Axisymmetric)
     for entry in tractions:
@@ -93,4 +123,4 @@ def loaded(experiment, name: str, cut, space, gradient):
     scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
     held = np.tile(np.eye(D), (N, 1, 1))
     carries = np.any(force != 0, axis=1) | np.any(dipole != 0, axis=(1, 2))
-    return Load(force, dipole, held, carries, np.zeros(N), max(ramps, default=0.0), rate, float(scale))
+    return Load(force, dipole, held, carries, np.zeros(N), ramp_of(*course), rate, float(scale))

@@ -41,10 +41,15 @@ class NoWarming(NamedTuple):
 
 
 class Both(NamedTuple):
-    """Loads, and what the config gives."""
+    """Loads, and what else the config gives."""
 
-    load: Any  # Load
-    given: Any  # Given
+    load: Any  # Load, or Both
+    given: Any  # Given, Load or Both
+
+
+def acting(source) -> list:
+    """What acts on a body, one by one."""
+    return [*acting(source.load), *acting(source.given)] if isinstance(source, Both) else [source]
 
 
 PER_PARTICLE[Given] = ("X", "t", "b", "rest")

@@ -84,8 +84,8 @@ def cube(options: Options) -> Any:
     body = Body(particles, Isothermal(300.0), NoExchange(), NeoHookean(MU, LAM), NoFlow(), NoExpansion(), NoHeating())
     nodes = options.n - 2 * EDGE + 1 + 2 * PAD
     space = Plane(h, nodes, nodes) if dim == 2 else Volume(h, nodes, nodes, nodes)
-    gravity = np.zeros(dim)
-    gravity[1] = GRAVITY
+    gravity = np.zeros((1, dim))
+    gravity[0, 1] = GRAVITY
     return Scene(space, Mls(), Apic(), ("cube",), (body,), np.full((3, 2), STOP), gravity, 1.0, 1.0, np.array([0.0, 1.0]), None, 1.0, None)
 
 

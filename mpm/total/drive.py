@@ -50,8 +50,12 @@ def show_all(scene) -> None:
 def advance_references(scene, clock, work, dt: float, steps: int) -> None:
     """One block of `steps` steps of dt, without `work`; clock.reports tells of it."""
     clock.reset()
+    if scene.course is not None:
+        scene.course.lay(scene, clock.time, dt, steps, 0.0)
     for body, reference, report in zip(scene.bodies, scene.references, clock.reports, strict=True):
         advance_total(scene.space, body, reference, scene.gravity, dt, steps, report)
+    if scene.course is not None:
+        clock.worked += scene.course.work(scene)
 
 
 def present_limits(scene, clock) -> Limits:

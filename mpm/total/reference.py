@@ -34,7 +34,7 @@ class Reference(NamedTuple):
     sign: np.ndarray  # (G, D)
     held: np.ndarray  # (H, 2) (node, direction) that a wall holds
     t: np.ndarray  # (1,) time [s]
-    ramp: float  # time to full load [s]
+    ramp: Any  # mpm.state.Ramp or Within, of load and drag
     drag: float  # rate of the drag [1/s]
     courant: float  # largest stable step in h sqrt(R0/(D lam + 2 mu)), at rest
     warmth: Any  # mpm.total.heat.Warmth or NoWarmth

@@ -17,7 +17,7 @@ import numpy as np
 from mpm.basis import stencil
 from mpm.boundary import directions
 from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
-from mpm.integrate.traction import share
+from mpm.integrate.traction import share, within
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
 from mpm.total.forces import act_on, average_volume
@@ -30,26 +30,30 @@ SHARE = 0.9  # of the largest stable step
 
 @kernel
 def advance_total(space, body, reference, gravity, dt, steps, report):
-    """`steps` steps of dt of one body; report (REPORT,): integrate/strain.py, its STRAIN such that 1 - STRAIN is how much stiffer than at rest it is."""
-    chunk, x, begun = new_chunk(gravity.shape[0], reference.f, True, False), 0.5 * dt * reference.drag, report[STRAIN]
+    """`steps` steps of dt of one body; gravity (1 or steps + 1, D), at the kicks [m/s2].
+
+    report (REPORT,): integrate/strain.py, its STRAIN such that 1 - STRAIN is how much stiffer than at rest it is.
+    """
+    chunk, rows, begun = new_chunk(gravity.shape[1], reference.f, True, False), len(gravity), report[STRAIN]
+    x = 0.5 * dt * reference.drag * within(reference.ramp, reference.t[0], 0.0)
     squeeze = force_all(space, body, reference, chunk, 0.0 * dt, report)
     for step in range(steps):
         if report[CODE] == 0.0:
             opening = step == 0
-            kick(reference, gravity, 1.0 - x if opening else (1.0 - x) / (1.0 + x), 0.5 * dt if opening else dt / (1.0 + x))
+            kick(reference, gravity[step % rows], 0.0, 1.0 - x if opening else (1.0 - x) / (1.0 + x), 0.5 * dt if opening else dt / (1.0 + x))
             report[WORKED] += dt * power(reference, dt)
             drift(reference, dt)
             squeeze = max(squeeze, force_all(space, body, reference, chunk, dt, report))
             report[STEP] = step
-    kick(reference, gravity, 1.0 / (1.0 + x), 0.5 * dt / (1.0 + x))
+    kick(reference, gravity[steps % rows], 1.0, 1.0 / (1.0 + x), 0.5 * dt / (1.0 + x))
     report[STRAIN] = min(begun, 1.0 - (1.0 - min(report[STRAIN], 0.0)) * squeeze)
 
 
 @kernel
-def kick(reference, gravity, keep, push):
-    """v <- keep v + push a."""
+def kick(reference, gravity, past, keep, push):
+    """v <- keep v + push a; loads that jump now by `past` as before it."""
     f, v, m, load, D = reference.f, reference.v, reference.m, reference.load, gravity.shape[0]
-    now = push * share(reference.t[0], reference.ramp)
+    now = push * share(reference.ramp, reference.t[0], past)
     for n in reference.active:
         inverse = 1.0 / m[n]
         for c in range(D):
@@ -64,11 +68,12 @@ def kick(reference, gravity, keep, push):
 def power(reference, dt):
     """What tractions and drag work on the nodes in the middle of the coming step [W]."""
     v, m, load, D = reference.v, reference.m, reference.load, reference.X.shape[1]
-    total, now = 0.0, share(reference.t[0] + 0.5 * dt, reference.ramp)
-    if load.shape[0] > 0 or reference.drag > 0.0:
+    middle = reference.t[0] + 0.5 * dt
+    total, now, drag = 0.0, share(reference.ramp, middle, 0.0), reference.drag * within(reference.ramp, middle, 0.0)
+    if load.shape[0] > 0 or drag > 0.0:
         for n in reference.active:
             for c in range(D):
-                total -= reference.drag * m[n] * v[n, c] * v[n, c]
+                total -= drag * m[n] * v[n, c] * v[n, c]
                 if load.shape[0] > 0:
                     total += now * load[n, c] * v[n, c]
     return total

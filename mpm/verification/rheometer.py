@@ -76,9 +76,9 @@ def creep(times, traction, axial, lateral) -> Reading:
 
 def creep_run(run, experiment) -> Reading:
     """From a Run of configs/scenes/dough_creep.yaml: strains of the disc as a whole, by the mean height and radius of its mass."""
-    from mpm.integrate.traction import share
+    from mpm.integrate.traction import risen
 
     (load,) = experiment.loads
-    traction = np.array([load.traction.nominal[-1] * share(t, load.traction.ramp) for t in run.times])
+    traction = np.array([load.traction.nominal[-1] * risen(t, load.traction.ramp) for t in run.times])
     height, radius = run.series["position_mean_z"], run.series["position_mean_r"]
     return creep(run.times, traction, np.log(height / height[0]), np.log(radius / radius[0]))

@@ -18,7 +18,7 @@ def problem(disc, dimension, seed=3):
     body, rng = scene.bodies[0], np.random.default_rng(seed)
     body.particles.B[:] = rng.normal(scale=0.02, size=body.particles.B.shape)
     body.particles.v[:] = rng.normal(scale=1e-4, size=body.particles.v.shape)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, scene.implicit.walls, scene.gravity, 4e3)
+    nodes = new_nodes(scene.space, scene.gradient, body.particles, scene.implicit.walls, scene.gravity[-1], 4e3)
     skin = new_skin(2, np.array([0, len(body.surface.owner)]))
     lay_skins(scene.space, scene.bodies, skin)
     skin.x[:, 1] -= 0.05e-3  # some in the wall

@@ -7,10 +7,11 @@ import pytest
 
 import mpm
 from mpm.config import ConfigError
-from mpm.integrate.traction import share
+from mpm.integrate.traction import risen
 from mpm.scene.build import build
 from mpm.scene.refusal import SceneError
-from mpm.state import Load, NoSource
+from mpm.sources import acting
+from mpm.state import Load, NoSource, Ramp
 
 pytestmark = pytest.mark.plain
 
@@ -74,14 +75,14 @@ def test_drag_alone_slows_by_its_rate(core):
 
 
 def test_ramp():
-    assert [share(t, 2.0) for t in (0.0, 0.5, 1.0, 2.0, 3.0)] == [0.0, 0.15625, 0.5, 1.0, 1.0] and share(0.0, 0.0) == 1.0
+    assert [risen(t, 2.0) for t in (0.0, 0.5, 1.0, 2.0, 3.0)] == [0.0, 0.15625, 0.5, 1.0, 1.0] and risen(0.0, 0.0) == 1.0
 
 
 def test_time_scaling_hurries_loads(core):
     experiment = scene(core, 1, [{"of": "body", "side": "right", "traction": {"nominal": [1.0], "ramp": 4.0}}, {"of": "body", "drag": {"rate": 3.0}}],
                        time={"end": 8.0, "scale": 10.0})  # fmt: skip
     load = build(experiment).bodies[0].source
-    assert (load.ramp, load.rate, load.force.sum()) == (pytest.approx(0.4), pytest.approx(30.0), pytest.approx(1.0))
+    assert (load.ramp.time, load.rate, load.force.sum()) == (pytest.approx(0.4), pytest.approx(30.0), pytest.approx(1.0))
 
 
 def test_absence(core):
@@ -113,10 +114,13 @@ def test_a_point_and_a_rigid_body_are_not_loaded(core):
         mpm.load(data)
 
 
-def test_two_ramps_are_refused(core):
+def test_two_ramps(core):
+    """Two loads, each with its own; in the total frame they are refused."""
     loads = [{"of": "body", "side": side, "traction": {"nominal": [1.0], "ramp": ramp}} for side, ramp in (("left", 1.0), ("right", 2.0))]
+    both = acting(build(scene(core, 1, loads)).bodies[0].source)
+    assert [one.ramp for one in both] == [Ramp(1.0), Ramp(2.0)] and all(one.force.sum() == pytest.approx(1.0) for one in both)
     with pytest.raises(SceneError, match="ramps of 1 s, 2 s"):
-        build(scene(core, 1, loads))
+        build(scene(core, 1, loads, method={"frame": "total"}))
 
 
 @pytest.mark.parametrize("cells", [8, 16])

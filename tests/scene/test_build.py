@@ -51,7 +51,7 @@ def test_particles_a_cell(core):
 
 def test_walls_gravity_and_the_axis(core):
     scene = build(core.experiment("axisymmetric", walls={"bottom": "stick", "outer": "contact"}, gravity=[0, -9.81]))
-    assert scene.walls[:2].tolist() == [[SLIP, CONTACT], [CONTACT, CONTACT]] and scene.gravity.tolist() == [0, -9.81]
+    assert scene.walls[:2].tolist() == [[SLIP, CONTACT], [CONTACT, CONTACT]] and scene.gravity.tolist() == [[0, -9.81]]
 
 
 def test_methods(core):

@@ -22,7 +22,6 @@ output: {{every: {end}}}
 """
 FITTING = {"at": 1.0, "of": "solid", "alpha": 1.0, "method": "precision: float64", "more": "gravity: [0, -0.1]", "end": 3.0}
 MELTS = "{bump: {base: 1, heat: 9, at: 310, width: 2}}"
-PULLED = "loads: [{of: one, side: left, traction: {nominal: [1, 0], ramp: 1}}, {of: one, side: top, traction: {nominal: [1, 0], ramp: 2}}]"
 REFUSED = {  # what is changed: (line, column, path, words of the message)
     "transfer": ({"method": "transfer: {xpic: {order: 2}}"}, 8, 10, "method.transfer", "take apic, flip or affine_flip"),
     "locking": ({"method": "locking: fbar"}, 8, 10, "method.locking", "leave it out"),
@@ -31,7 +30,6 @@ REFUSED = {  # what is changed: (line, column, path, words of the message)
     "overlap": ({"at": 0.7}, 4, 9, "bodies.two.shape", "move one of them"),
     "weld": ({"more": "contacts: [{between: [one, two], welded: {}}]"}, 9, 12, "contacts.0", "let them touch"),
     "still": ({"of": "stone"}, 4, 3, "bodies.two", "give it one"),
-    "ramps": ({"more": PULLED}, 9, 91, "loads.1.traction", "ramps of 1 s, 2 s"),
     "endless": ({"end": 1e12}, 10, 8, "time.end", "at most"),
 }
 

@@ -1,0 +1,77 @@
+"""What of a scene changes over time beside its heat: gravity, friction, what walls hold, which pairs rub and conduct, loads that begin and end.
+
+settings   numbers in arrays of the scene, as they are in the middle of a block of steps. They jump only where blocks end
+gravity    a row a step, as it is when the impulse of the step acts: at the step's start (docs/physics.md 4)
+jumps      the first impulse of a block acts from half a step before the block on (mpm.contact.insync). That share of it, `past`, is what held before a jump,
+           and the rest is what holds after it, so momentum is exact
+Error      order 2 in the step where gravity changes smoothly: v is exact under one that is linear in time, x lacks g' t dt^2/6. Friction that changes smoothly
+           is that of a block's middle, order 2 in the block (at most 32 steps)
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mpm.heat.programmes import at, before, bounds, during, turns
+from mpm.state import Within
+
+
+@dataclass
+class Course:
+    """Programmes (mpm.heat.programmes) of what changes."""
+
+    settings: tuple[tuple[np.ndarray, tuple, Any], ...] = ()  # (array, index, programme)
+    gravity: tuple = ()  # a programme a direction [m/s2]; nothing where it stays
+    loads: tuple[Within, ...] = ()
+    block: tuple = field(default=(), init=False)  # momentum and mass as a block began, gravity at its steps' ends, dt
+
+    @property
+    def turns(self) -> tuple[float, ...]:
+        """Times at which something jumps [s]."""
+        found = {when for *_, one in self.settings for when in turns(one)} | {when for one in self.gravity for when in turns(one)}
+        return tuple(sorted(found | {when for load in self.loads for when in (load.begin, load.end)}))
+
+    @property
+    def heaviest(self) -> float:
+        """No gravity of the run is larger [m/s2]."""
+        return float(np.linalg.norm([max(map(abs, bounds(one))) for one in self.gravity]))
+
+    def set(self, start: float, span: float, holds=during) -> None:
+        """Settings in the middle of `span` from `start` on. holds: during, or before: as they are up to `start`."""
+        for array, index, one in self.settings:
+            array[index] = at(holds(one, start), start + 0.5 * span)
+
+    def lay(self, scene, start: float, dt: float, steps: int, past: float) -> None:
+        """All for a block of steps; `past` of its first impulse acts before it. 1: all of it, and nothing is as after `start`."""
+        self.set(start, dt * steps, before if past == 1.0 else during)
+        for load in self.loads:
+            load.past[0] = past
+        if self.gravity:
+            rows = np.array([[at(during(one, start), start + k * dt) for one in self.gravity] for k in range(steps + 1)])
+            first = past * np.array([at(before(one, start), start) for one in self.gravity]) + (1.0 - past) * rows[0]
+            self.block, scene.gravity = (momentum(scene), rows, dt), np.concatenate([first[None], rows[1:]])
+
+    def work(self, scene) -> float:
+        """Of gravity in the block that is over [J]: sum over steps of its mean at both ends times momentum and dt. 0 where gravity stays: that is a potential.
+
+        Momentum in the middle of each step is what gravity made of that at the beginning; what other forces gave is spread evenly.
+        """
+        if not self.gravity:
+            return 0.0
+        (p, mass), rows, dt = self.block
+        half = 0.5 * mass * dt if scene.references else 0.0  # velocities of the total frame are those of the ends of steps
+        fallen = p - half * rows[0] + mass * dt * np.cumsum(rows[:-1], axis=0)
+        rest = momentum(scene)[0] - half * rows[-1] - fallen[-1]
+        shares = np.arange(1, len(rows)) / (len(rows) - 1)
+        return float(0.5 * dt * np.sum((rows[1:] + rows[:-1]) * (fallen + shares[:, None] * rest)))
+
+
+def momentum(scene) -> tuple[np.ndarray, float]:
+    """(D,) [kg m/s], and the mass [kg]."""
+    D = scene.gravity.shape[1]
+    if scene.references:
+        parts = [(one.m[one.active].astype(float), one.v[one.active, :D].astype(float)) for one in scene.references]
+    else:
+        parts = [(body.particles.m.astype(float), body.particles.v.astype(float)) for body in scene.bodies]
+    return sum(m @ v for m, v in parts), float(sum(m.sum() for m, _ in parts))
