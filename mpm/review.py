@@ -236,10 +236,13 @@ def near(experiment: Any, run: Run) -> Iterator[str]:
 
 def late(experiment: Any, run: Run) -> Iterator[str]:
     end = experiment.time.end
-    for section in ("surfaces", "contacts", "sources"):
+    for section in ("surfaces", "contacts", "sources", "loads"):
         for index, entry in enumerate(getattr(experiment, section)):
             if (begins := getattr(entry, "from")) >= end:
                 yield f"{section}.{index} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
+    for side, wall in experiment.walls.items():
+        if (begins := getattr(wall, "from")) >= end:
+            yield f"walls.{side} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
     for name, tool in experiment.tools.items():
         for entry, where in ((tool, ""), (tool.motion, ".motion")):
             if (begins := getattr(entry, "from")) >= end:

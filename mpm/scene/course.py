@@ -2,13 +2,14 @@
 
 import math
 
-from mpm.boundary import KINDS, SLIP, STICK
+from mpm.boundary import SLIP, STICK
 from mpm.config.boundary import spell
 from mpm.contact.course import Course
 from mpm.heat.programmes import Parts, changes
 from mpm.heat.programmes import spell as limited
 from mpm.scene.conventions import SIDES
 from mpm.scene.exchange import most, programme
+from mpm.scene.menus import wall_kind
 from mpm.sources import acting
 from mpm.state import Load, Within
 
@@ -21,7 +22,7 @@ def lasting(entry, what):
 
 def kinds(wall):
     """The kind of a mirror over time: it slides where it does not hold."""
-    one = limited(float(KINDS[wall.acts]), getattr(wall, "from"), wall.until)
+    one = limited(float(wall_kind(wall.acts)), getattr(wall, "from"), wall.until)
     return Parts(one.jumps, tuple(float(SLIP) if part == 0.0 else part for part in one.parts)) if isinstance(one, Parts) else one
 
 
