@@ -16,7 +16,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 # Rooms by layer. A room may import rooms below its own layer, and its own modules; of its own layer only what PEERS names.
 LAYERS = {
-    "cache": 0, "fingerprint": 0, "shortcuts": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0,
+    "cache": 0, "fingerprint": 0, "shortcuts": 0, "linking": 0, "jit": 0, "compiling": 0, "text": 0, "triangles": 0,
     "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
@@ -36,7 +36,7 @@ PEERS = {
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"}, "opened": {"plots"},
 }  # fmt: skip
-LEAVES = {"mpm.records.variables", "mpm.text", "mpm.warned"}  # anyone may import it
+LEAVES = {"mpm.records.variables", "mpm.text", "mpm.triangles", "mpm.warned"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
 COMPUTING = 3  # the last layer that may know only numbers
 

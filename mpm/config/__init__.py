@@ -20,6 +20,7 @@ Further files
     loading           what is prescribed to a material point
     loads             forces on the surface of a body that moves, and a drag that brings it to rest
     measured          measured curves
+    meshes            triangle meshes of a config
     model             which model answers the config
     parameters        named parameters
     programmes        temperatures over time

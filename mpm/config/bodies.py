@@ -69,6 +69,28 @@ class Polygon(Kind):
     vertices: tuple[Point, ...] = doc(min_length=3, description="corners in order; the last is joined to the first")
 
 
+class Mesh(Kind):
+    """Closed mesh of triangles from a file, in three dimensions."""
+
+    kind: ClassVar[str] = "mesh"
+    file: str = doc(description="STL, OBJ, PLY or OFF file, relative to the config")
+    unit: Length = doc(1.0, description="what a unit of the file is: 1 mm")
+    centre: Point | None = doc(None, description="where the middle of its box is; where the file has it unless given")
+    data: str = doc("", description="its triangles; filled in from the file when the config is read")
+
+    @model_validator(mode="after")
+    def whole(self) -> "Mesh":
+        """What was filled in is there in full."""
+        from mpm.triangles import unpacked
+
+        try:
+            if self.data:
+                unpacked(self.data)
+        except ValueError as error:
+            raise problem("mesh", str(error), "a file, and no data", at=("data",)) from None
+        return self
+
+
 class MaterialPoint(Kind):
     """No extent: one state, carried along `loading`, exchanging heat as a lumped body (dimension 0)."""
 
@@ -94,7 +116,7 @@ class Spin:
         return tuple(map(self.quantity.validate, value)) if isinstance(value, list | tuple) else self.quantity.validate(value)
 
 
-SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon, MaterialPoint)
+SHAPES: tuple[type[Kind], ...] = (Box, Ball, Cylinder, Ring, Polygon, Mesh, MaterialPoint)
 
 
 class Body(Model):

@@ -49,11 +49,22 @@ def load(source: str | File | dict[str, Any], overrides: dict[str, Any] | None =
         apply(trial, wanted + given, found)
         found += validate(trial)[1]
     if experiment is not None:
-        found += problems(full, embed(experiment, path.parent if path else File()))
+        folder = path.parent if path else File()
+        found += problems(full, [*embed(experiment, folder), *triangles(experiment, folder)])
     if found or experiment is None:
         raise ConfigError(found)
     experiment._source, experiment._path, experiment._tree = text, path, full
     return experiment
+
+
+def triangles(experiment: Experiment, folder: File) -> list[Finding]:
+    """Meshes that shapes name, read; and once they are known, what is then wrong with the whole."""
+    meshes = [item for section in (experiment.bodies, experiment.tools) for item in section.values() if item.shape.kind == "mesh" and not item.shape.data]
+    if not meshes:
+        return []
+    from mpm.config.meshes import embed as read
+
+    return [*read(experiment, folder)] or [*check(experiment)]
 
 
 def restore(resolved: dict[str, Any]) -> Experiment:

@@ -4,11 +4,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from mpm.config.bodies import Ball, Box, Cylinder, MaterialPoint, Polygon, Ring
+from mpm.config.bodies import Ball, Box, Cylinder, MaterialPoint, Mesh, Polygon, Ring
+from mpm.config.partial import Unknown
 
 ALL = (1, 2, "axisymmetric", 3)
-WHERE: dict[Any, tuple] = {Box: ALL, Ball: ALL, Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric"), MaterialPoint: (0,)}
-POINTS: dict[Any, tuple] = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",), MaterialPoint: ()}
+WHERE: dict[Any, tuple] = {Box: ALL, Ball: ALL, Cylinder: ("axisymmetric", 3), Ring: (2,), Polygon: (2, "axisymmetric"), Mesh: (3,),
+                          MaterialPoint: (0,)}  # fmt: skip
+POINTS: dict[Any, tuple] = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder: ("base",), Ring: ("centre",), Polygon: ("vertices",), Mesh: ("centre",),
+                           MaterialPoint: ()}  # fmt: skip
 ROUND_OFF = 1e-9
 
 
@@ -18,6 +21,8 @@ def misfits(shape: Any, dimension: Any, directions: int) -> Iterator[tuple[tuple
         yield (), f"there is no {shape.kind} in dimension {dimension}", [kind.kind for kind, where in WHERE.items() if dimension in where]
         return
     for key in POINTS[type(shape)]:
+        if getattr(shape, key) is None:
+            continue
         points = [((key, index), point) for index, point in enumerate(shape.vertices)] if key == "vertices" else [((key,), getattr(shape, key))]
         for at, point in points:
             if len(point) != directions:
@@ -39,6 +44,9 @@ def bounds(shape: Any, dimension: Any) -> tuple[list[float], list[float]]:
         a, b = ((high - low) / 2 for low, high in zip(shape.lower, shape.upper, strict=True))
         c, s = abs(math.cos(shape.angle)), abs(math.sin(shape.angle))
         reach = [a * c + b * s, a * s + b * c]
+    elif isinstance(shape, Mesh):
+        vertices, _ = corners(shape)
+        return vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
     elif isinstance(shape, Polygon):
         return [min(axis) for axis in zip(*shape.vertices, strict=True)], [max(axis) for axis in zip(*shape.vertices, strict=True)]
     elif isinstance(shape, Cylinder):
@@ -54,7 +62,7 @@ def bounds(shape: Any, dimension: Any) -> tuple[list[float], list[float]]:
 
 def outside(shape: Any, dimension: Any, size: tuple[float, ...]) -> str:
     """In words, where a shape leaves the domain; empty if it does not."""
-    if isinstance(shape, MaterialPoint):
+    if isinstance(shape, MaterialPoint) or (isinstance(shape, Mesh) and not shape.data):  # a mesh that is not read yet is looked at when it is
         return ""
     low, high = bounds(shape, dimension)
     for index, (a, b, length) in enumerate(zip(low, high, size, strict=True)):
@@ -65,8 +73,10 @@ def outside(shape: Any, dimension: Any, size: tuple[float, ...]) -> str:
 
 def holds(shape: Any, point: tuple[float, ...], slack: float) -> bool:
     """Whether a point lies in a shape or at most `slack` [m] outside. The shape suits the dimension, the point has a number a direction."""
-    if isinstance(shape, MaterialPoint):
+    if isinstance(shape, MaterialPoint) or (isinstance(shape, Mesh) and not shape.data):
         return True
+    if isinstance(shape, Mesh):
+        return encloses(*corners(shape), point, slack)
     if isinstance(shape, Ball):
         return math.dist(point, shape.centre) <= shape.radius + slack
     if isinstance(shape, Ring):
@@ -80,6 +90,26 @@ def holds(shape: Any, point: tuple[float, ...], slack: float) -> bool:
         c, s, x, y = math.cos(shape.angle), math.sin(shape.angle), point[0] - centre[0], point[1] - centre[1]
         point = (centre[0] + c * x + s * y, centre[1] - s * x + c * y)
     return all(low - slack <= x <= high + slack for low, x, high in zip(shape.lower, point, shape.upper, strict=True))
+
+
+def corners(shape: Mesh) -> Any:
+    """Vertices and faces of a mesh [m]."""
+    from mpm.config.meshes import placed
+
+    if not shape.data:
+        raise Unknown  # it is read once the rest is known to be right
+    return placed(shape)
+
+
+def encloses(vertices: Any, faces: Any, point: tuple[float, ...], slack: float) -> bool:
+    """Whether a point lies in a closed mesh, by the solid angle of its triangles (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125)."""
+    import numpy as np
+
+    a, b, c = np.moveaxis(vertices[faces] - np.array(point), 1, 0)
+    x, y, z = (np.linalg.norm(one, axis=1) for one in (a, b, c))
+    below = x * y * z + np.sum(a * b, axis=1) * z + np.sum(b * c, axis=1) * x + np.sum(c * a, axis=1) * y
+    turned = 2 * np.arctan2(np.einsum("fa,fa->f", a, np.cross(b, c)), below).sum() / (4 * np.pi)
+    return bool(turned > 0.5 or min(x.min(), y.min(), z.min()) <= slack)
 
 
 def within(vertices: Any, point: tuple[float, ...], slack: float) -> bool:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import create_model, model_validator
 
 from mpm.config.base import Model, doc, one_of, problem
-from mpm.config.bodies import Ball, Box, Cylinder, Polygon, Spin
+from mpm.config.bodies import Ball, Box, Cylinder, Mesh, Polygon, Spin
 from mpm.config.boundary import WallHeat
 from mpm.config.programmes import FrictionProgramme
 from mpm.config.quantities import AngularVelocity, Coordinate, Quantity, Velocity
@@ -13,7 +13,7 @@ from mpm.config.quantities import AngularVelocity, Coordinate, Quantity, Velocit
 Moment = Annotated[float, Quantity("s", "time", least=0)]
 Force = Annotated[float, Quantity("N", "force")]
 Mass = Annotated[float, Quantity("kg", "mass", above=0)]
-Shape = one_of("shape of a tool", Box, Ball, Cylinder, Polygon)
+Shape = one_of("shape of a tool", Box, Ball, Cylinder, Polygon, Mesh)
 
 MOMENTS: dict[str, Any] = {  # `from` is no name that a class could write
     "from": (Moment, doc(0.0, description="time of its beginning")),

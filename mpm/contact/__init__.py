@@ -24,5 +24,6 @@ Further files
     insync     velocities at the time of the positions
     outlook    how much of a run has something near, from its start alone
     texture    what a press that bites twice says of a body
+    triangles  signed distance of a closed triangle mesh
     links      where heat passes between bodies
 """

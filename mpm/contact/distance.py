@@ -1,10 +1,11 @@
-"""Signed distances of tools and their gradients: box, ball, upright cylinder, polygon, each about its own centre."""
+"""Signed distances of tools and their gradients: box, ball, upright cylinder, polygon, mesh of triangles, each about its own centre."""
 
 import math
 
+from mpm.contact.triangles import to_mesh
 from mpm.jit import kernel
 
-BOX, BALL, CYLINDER, POLYGON = range(4)
+BOX, BALL, CYLINDER, POLYGON, MESH = range(5)
 
 
 @kernel
@@ -19,6 +20,8 @@ def signed(tools, t, x, y, n):
         gap = to_ball(y, tools.size[t, 0])
     elif kind == POLYGON:
         gap = to_polygon(y, tools.corner[t], tools.corners[t])
+    elif kind == MESH:
+        gap = to_mesh(tools.mesh, t, y)
     elif kind == CYLINDER:
         gap = to_cylinder(y, tools.size[t, 0], tools.size[t, 1])
     else:

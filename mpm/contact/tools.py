@@ -6,7 +6,7 @@
 Fails when   a piece of a body is larger than the tool: its corners enter between pieces (refused at the start: thinner than a cell)
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import literal_unroll
@@ -29,6 +29,7 @@ class Tools(NamedTuple):
     size: np.ndarray  # (T, 3) half edges; a ball's radius; a cylinder's radius and half height [m]
     corner: np.ndarray  # (T, V, 2) of a polygon about its centre, counter-clockwise [m]
     corners: np.ndarray  # (T,) how many
+    mesh: Any  # mpm.contact.triangles.Triangles about their centres, or NoTriangles
     bound: np.ndarray  # (T,) radius about the centre that holds all of it [m]
     mu: np.ndarray  # (T,)
     there: np.ndarray  # (T,) whether it is there

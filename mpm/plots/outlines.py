@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from mpm.plots.style import INK, QUIET
+from mpm.triangles import lines as lines_of_mesh
 
 ROUND = 64
 SIDES = {
@@ -97,6 +98,8 @@ def shape(said: dict[str, Any], dimension: Any) -> list[np.ndarray]:
             return [half(np.array([0.0, base[-1]]), np.array([radius, base[-1] + height]))]
         ends = [circle(base + np.array([0.0, 0.0, up]), radius, (0, 1)) for up in (0.0, height)]
         return ends + [np.array([ends[0][k], ends[1][k]]) for k in range(0, ROUND, ROUND // 4)]
+    if kind == "mesh":
+        return lines_of_mesh(about)
     lower, upper, angle = np.asarray(about["lower"], float), np.asarray(about["upper"], float), float(about.get("angle") or 0.0)
     if dimension == "axisymmetric" and lower[0] <= 0.0:
         return [half(lower, upper)]

@@ -17,6 +17,7 @@ Further files
     inventory          what a config holds, from the config alone
     law                laws of materials
     meeting            which bodies of a config can meet which walls and each other, and the pieces of surface that they meet by
+    mesh               closed triangle meshes as shapes
     menus              what the kinds of a menu of the config are to solvers
     outline            the outline of a sampled body
     point              material points from validated experiments, and their Runs

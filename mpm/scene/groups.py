@@ -106,7 +106,7 @@ def motion(experiment, one: Scales) -> list[Group]:
     """Gravity, impact, Deborah, Froude."""
     if one.lam is None:
         return []
-    found, g = [], math.hypot(*experiment.gravity) if experiment.gravity is not None else 0.0
+    found, g = [], heaviest(experiment)
     weight = one.density * g * one.height
     if weight > 0:
         sag = weight / one.softest

@@ -13,6 +13,7 @@ import numpy as np
 from mpm.follow import Carried, carried
 from mpm.scene.contents import nearest
 from mpm.scene.cut import Segment
+from mpm.scene.mesh import Mesh
 from mpm.scene.shapes import Ball, Box, Cylinder, Shape, shape
 
 SINGLE = np.float32  # of weights: of a length of half a particle
@@ -87,6 +88,11 @@ def ridges_box(shape: Box, spacing: float) -> np.ndarray:
         edge[:, axis] = along
         found.append(edge)
     return np.concatenate(found)
+
+
+@ridges.register
+def ridges_mesh(shape: Mesh, spacing: float) -> np.ndarray:
+    return shape.edges(spacing)
 
 
 @ridges.register

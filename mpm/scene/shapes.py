@@ -235,6 +235,10 @@ def shape(model, dimension=None) -> Shape:
     """The shape that a config names: `{"ball": {"centre": [0, 0], "radius": 1.0}}`, a model with a `kind`, or a Shape already."""
     if isinstance(model, Shape):
         return model
+    if getattr(model, "kind", "") == "mesh":
+        from mpm.scene.mesh import from_config
+
+        return from_config(model)
     given = model if isinstance(model, dict) else {model.kind: model.model_dump()}
     (kind, values), *more = [(k, v) for k, v in given.items() if v is not None]
     if more or kind not in KINDS:

@@ -4,18 +4,21 @@ import math
 
 import numpy as np
 
-from mpm.contact.distance import BALL, BOX, CYLINDER, POLYGON
+from mpm.contact.distance import BALL, BOX, CYLINDER, MESH, POLYGON
 from mpm.contact.drive import Drive, Told
 from mpm.contact.tools import Tools
+from mpm.contact.triangles import together
 from mpm.heat.programmes import at
 from mpm.scene.conventions import spin_tensor
 from mpm.scene.exchange import programme
 from mpm.scene.law import elastic_law
+from mpm.scene.mesh import Mesh
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, Shape, cut_quadrature, shape
 
 MOST_STEPS = 64  # of a block
 OVERLAP = 0.05  # cells
+NEAR = 1.0  # cells about a mesh in which its distance is known
 FAST = 0.2  # of the speed of sound: a tool that is faster passes pieces between two steps
 
 
@@ -29,11 +32,14 @@ def drive(experiment) -> Drive | None:
     if not experiment.tools:
         return None
     D, T, names = experiment.grid.directions, len(experiment.tools), list(experiment.tools)
-    shapes = [numbers(outline(experiment, tool), experiment.grid.dimension) for tool in experiment.tools.values()]
+    outlines = [outline(experiment, tool) for tool in experiment.tools.values()]
+    shapes = [numbers(one, experiment.grid.dimension) for one in outlines]
+    near = NEAR * experiment.grid.cell
+    meshes = [one.moved(-centre).triangles(near) if isinstance(one, Mesh) else None for one, (_, centre, _, _) in zip(outlines, shapes, strict=True)]
     V = max(1, *(len(corner) for _, _, _, corner in shapes))
     tools = Tools(
         kind=np.array([kind for kind, _, _, _ in shapes]), size=np.stack([size for _, _, size, _ in shapes]), corner=np.zeros((T, V, 2)),
-        corners=np.array([len(corner) for _, _, _, corner in shapes]), bound=np.zeros(T),
+        corners=np.array([len(corner) for _, _, _, corner in shapes]), mesh=together(meshes), bound=np.zeros(T),
         mu=np.array([at(programme(tool.friction), 0.0) for tool in experiment.tools.values()]),
         there=np.ones(T, np.bool_), centre=np.zeros((T, D)), turn=np.tile(np.eye(D), (T, 1, 1)), v=np.zeros((T, D)), spin=np.zeros((T, D, D)),
         force=np.zeros((T, D)), light=np.zeros(T), way=np.zeros((T, D)), shift=np.zeros((T, D)), path=np.zeros((MOST_STEPS + 1, T, D)),
@@ -42,7 +48,7 @@ def drive(experiment) -> Drive | None:
     for t, (name, (kind, centre, size, corner)) in enumerate(zip(names, shapes, strict=True)):
         tool = experiment.tools[name]
         tools.corner[t, : len(corner)] = corner
-        flat = {BALL: size[:1], CYLINDER: size[:2], BOX: size[:D]}
+        flat = {BALL: size[:1], CYLINDER: size[:2], BOX: size[:D], MESH: size}
         tools.bound[t] = np.linalg.norm(corner, axis=1).max() if kind == POLYGON else np.linalg.norm(flat[kind])
         if tool.motion.force is not None:
             tools.force[t], tools.light[t] = tool.motion.force, 1.0 / tool.motion.mass
@@ -85,6 +91,8 @@ def numbers(body: Shape, dimension) -> tuple[int, np.ndarray, np.ndarray, np.nda
         return BALL, np.array(body.centre), np.array([body.radius, 0.0, 0.0]), corner
     if isinstance(body, Cylinder) and len(low) == 3:
         return CYLINDER, centre, np.array([body.radius, 0.5 * body.height, 0.0]), corner
+    if isinstance(body, Mesh):
+        return MESH, centre, size, corner
     if isinstance(body, Polygon) or (isinstance(body, Box) and body.angle and len(low) == 2):
         corner = np.array([piece.start for piece in body.pieces()])
         return POLYGON, centre, size, corner - centre
