@@ -67,6 +67,13 @@ class Course:
         return float(0.5 * dt * np.sum((rows[1:] + rows[:-1]) * (fallen + shares[:, None] * rest)))
 
 
+def strongest(scene) -> np.ndarray:
+    """Gravity of the largest size that it ever has, direction by direction (D,) [m/s2]."""
+    if scene.course is None or not scene.course.gravity:
+        return scene.gravity[0]
+    return np.array([max(bounds(one), key=abs) for one in scene.course.gravity])
+
+
 def momentum(scene) -> tuple[np.ndarray, float]:
     """(D,) [kg m/s], and the mass [kg]."""
     D = scene.gravity.shape[1]

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
+from mpm.contact.course import strongest
 from mpm.contact.meeting import box, skin_depth
 from mpm.contact.spots import seen
 from mpm.state import PAD
@@ -26,7 +27,7 @@ def fall(gap: float, speed: float, pull: float) -> float:
 
 def encounters(scene):
     """(gap, margin, speed, pull, extent) of what may meet: the gap, within `margin` of which something is near; how it closes; the body's extent that way."""
-    met, gravity = scene.meeting, np.asarray(scene.gravity)
+    met, gravity = scene.meeting, strongest(scene)
     h, D = met.space.h, directions(met.space)
     ways = [(*box(body.particles.x), body.particles.v.mean(axis=0)) for body in met.bodies]
     for b, (low, high, v) in enumerate(ways):
@@ -59,7 +60,7 @@ def near_share(scene, end: float, sound: float, settles: bool) -> float:
         left = end - begins
         if left > 0 and begins > 0 and not settles:
             fast = math.sqrt(speed**2 + 2 * pull * gap)
-            each = 2 * math.sqrt(len(scene.gravity)) * extent / sound + 2 * margin / fast
+            each = 2 * math.sqrt(directions(scene.space)) * extent / sound + 2 * margin / fast
             left = min(left, each * (1 + left // (each + 2 * fast / pull))) if pull > 0 else min(left, each)
         share = max(share, left / end)
     return share
