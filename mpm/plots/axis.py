@@ -11,6 +11,7 @@ from mpm.plots import words
 FEW = 64  # values that are told apart by their digits
 LETTERS = 105.0  # of ticks across a figure
 LOG_RATIO = 50.0  # values that span more than this are read on a logarithmic axis
+UNBROKEN = "\u00a0"  # a space at which no line ends, as within `Pa s`
 SHORT = 26  # letters of a heading in a legend
 
 
@@ -75,7 +76,7 @@ class Axis:
 
     def says(self, index: int) -> str:
         """`κ = 0.35 W/m/K`."""
-        return f"{self.called} = {self.text(index)} {self.units}".strip()
+        return f"{self.called} = {self.text(index)} {self.units.replace(' ', UNBROKEN)}".strip()
 
     @property
     def called(self) -> str:
