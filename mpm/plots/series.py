@@ -9,7 +9,7 @@ from matplotlib.patheffects import withStroke
 
 from mpm.plots import words
 from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, heading, legend_below
-from mpm.plots.view import Axis, View, spread
+from mpm.plots.view import NOTHING, Axis, View, spread
 
 MOST_LINES = 5
 DOTS = ("o", "s", "D", "^", "v")
@@ -41,7 +41,7 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     ax.set_ylabel(words.wrapped(words.with_units(shared_label(view, names), scale.units), letters))
     ax.margins(x=0.01)
     most = scale.factor * view.largest(view.series[names[0]].attrs.get("units", "1"))
-    calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]), floor=1e-12 * most)
+    calm(ax, np.concatenate([scale(row(view, name, at)) for name in names]), floor=NOTHING * most)
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
     if dots and ax.get_xlim()[1] > LATER * clock(time[-1]):
         ax.set_xlim(right=1.03 * clock(time[-1]))  # what was measured long after the run's end answers nothing

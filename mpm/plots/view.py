@@ -12,7 +12,8 @@ from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, dataset_name, de
 from mpm.text import visible
 from mpm.warned import counted
 
-__all__ = ["BOOKKEEPING", "LOG_RATIO", "Axis", "View", "spread", "tally"]
+__all__ = ["BOOKKEEPING", "LOG_RATIO", "NOTHING", "Axis", "View", "spread", "tally"]
+NOTHING = 1e-12  # of the largest number of a unit
 BOOKKEEPING = ("status", "error", "advice", "warnings", "warning_flags", "outcome", "run_id", "steps", "step_shortest", "step_longest", "wall_time",
                "attempts")  # fmt: skip
 
@@ -272,9 +273,14 @@ class View:
         """Family and unit of a series."""
         return name.split("_", maxsplit=1)[0], self.series[name].attrs.get("units", "1")
 
+    def told(self, name: str) -> bool:
+        """Whether a series is anything beside the others of its unit."""
+        largest = NOTHING * self.largest(self.series[name].attrs.get("units", "1"))
+        return bool(np.nanmax(np.abs(self.series[name].values), initial=0.0) > largest)
+
     def families(self) -> list[list[str]]:
-        """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are zero throughout, if others are not."""
+        """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are nothing throughout, if others are not."""
         found: dict[tuple[str, str], list[str]] = {}
         for name in self.series_names():
             found.setdefault(self.kin(name), []).append(name)
-        return [names for names in found.values() if any(np.nan_to_num(self.series[name].values).any() for name in names)] or list(found.values())
+        return [names for names in found.values() if any(self.told(name) for name in names)] or list(found.values())
