@@ -279,7 +279,7 @@ class View:
         return bool(np.nanmax(np.abs(self.series[name].values), initial=0.0) > largest)
 
     def families(self) -> list[list[str]]:
-        """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are nothing throughout, if others are not."""
+        """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are nothing, if others are not."""
         found: dict[tuple[str, str], list[str]] = {}
         for name in self.series_names():
             found.setdefault(self.kin(name), []).append(name)
