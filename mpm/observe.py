@@ -125,7 +125,7 @@ class Recorder:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
-        met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag, clock.time) if scene.meeting is not None and scene.implicit is None else ()
+        met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag, clock.time) if scene.meeting is not None else ()
         for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *self.of_bodies(scene), *wrong.items(), *met):
             self.series.setdefault(name, []).append(float(value))
         self.frame(scene, clock)

@@ -23,7 +23,7 @@ def named(experiment: Any, which: str) -> Any:
 def hindered(experiment: Any) -> str:
     """Why implicit mechanics cannot take an experiment, or is not what is wanted of it; empty where it can."""
     one = named(experiment, "implicit")
-    found = [*mechanics(one), *(wrong for side, wall in one.walls.items() for wrong in mechanics_wall(one, side, wall))]
+    found = [*mechanics(one), *(wrong for name, item in one.tools.items() for wrong in mechanics_tool(one, name, item))]
     found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
     if found:
         return found[0].message
@@ -43,8 +43,6 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
     if grid.dimension == 0 or not moves(experiment):
         yield Finding(at, "no body moves, so there is no mechanics to choose", "no `mechanics`, or an elastic section in a material", on_key=True)
         return
-    if grid.dimension == 3:
-        yield Finding(at, "implicit mechanics is not known in dimension 3 yet", [EXPLICIT, "dimension 1, 2 or axisymmetric"], given="implicit")
     if len(experiment.bodies) > 1:
         yield Finding(at, "implicit mechanics knows one body only, yet", EXPLICIT, given="implicit")
     if known(lambda: method.frame == "total"):
@@ -55,27 +53,23 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         yield Finding(("method", "transfer"), "implicit mechanics carries velocities by apic", ["apic", EXPLICIT], on_key=True)
     if known(lambda: method.precision != "float64"):
         yield Finding(("method", "precision"), "implicit mechanics is computed in double precision", ["float64", EXPLICIT], on_key=True)
-    if known(lambda: method.locking is not None):
-        yield Finding(("method", "locking"), "implicit mechanics has no cure of locking yet", ["no `locking`", EXPLICIT], on_key=True)
     if known(lambda: method.fracture == "surface"):
         yield Finding(("method", "fracture"), "implicit mechanics opens no faces", ["warn", "fail", EXPLICIT], on_key=True)
     if known(lambda: experiment.exact is not None and experiment.exact.kind == "manufactured"):
         yield Finding(("exact",), "the sources of a manufactured solution are not known to implicit mechanics", EXPLICIT, on_key=True)
 
 
-def mechanics_wall(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
-    """Of a wall."""
-    if asked(experiment) and known(lambda: item.acts == "contact" and item.friction not in (0.0, float("inf"))):
-        said = "implicit mechanics knows contact without friction, or without sliding"
-        yield Finding(("walls", side, item.kind, "friction"), said, ["0", ".inf", EXPLICIT], given=item.friction)
+def mechanics_tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
+    """Of a tool."""
+    if asked(experiment) and known(lambda: item.motion is not None and item.motion.force is not None):
+        said = "implicit mechanics moves tools as they are told: one that a force moves is not known to it yet"
+        yield Finding(("tools", name, "motion", "force"), said, ["velocity", "path", EXPLICIT], on_key=True)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
     """Of a material."""
     if not asked(experiment) or item.elastic is None:
         return
-    if item.elastic.kind != "hencky":
-        yield Finding(("materials", name, "elastic", item.elastic.kind), "implicit mechanics knows hencky only, yet", ["hencky", EXPLICIT], on_key=True)
     if item.flow is not None and known(lambda: item.flow.map != "radial"):
         said = "implicit mechanics knows the radial map only: the clipped one has no tangent yet"
         yield Finding(("materials", name, "flow", item.flow.kind, "map"), said, ["radial", EXPLICIT], on_key=True)

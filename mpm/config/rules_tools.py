@@ -26,8 +26,6 @@ def tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
         yield Finding((*at, "shape", item.shape.kind, *below), said, allowed)
     if experiment.method.frame == "total":
         yield Finding(at, "the total frame knows no tools yet", "method.frame: updated", on_key=True)
-    if experiment.method.mechanics == "implicit":
-        yield Finding(at, "implicit mechanics knows no tools yet", "method.mechanics: explicit", on_key=True)
     if experiment.time.scale > 1:
         yield Finding(at, "time scaling does not know tools", "time: {scale: 1}", on_key=True)
     if item.heat is not None and not heats(experiment):
@@ -70,9 +68,6 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
     if found is None:
         return
     what, of = found[:2]
-    if experiment.method.mechanics == "implicit":
-        yield Finding(("output", "observables", index), "implicit mechanics tells no forces of contact yet", "method.mechanics: explicit", given=name)
-        return
     bodies = list(experiment.bodies)
     pairs = [f"{a}_{b}" for k, a in enumerate(bodies) for b in bodies[k + 1 :]]
     known = (

@@ -193,10 +193,17 @@ def find_tools_tools(tools, space, bodies, skin, found, count, within):
                 put(found, count, s, first + t, gap, tools.mu[t], (skin.body[s], skin.owner[s]), (skin.home[s], x), faces(space, skin, s, n, 1.0))
                 meets_tool(tools, t, found, count, x, n)
             count += 1
-        b = 0
-        for body in literal_unroll(bodies):
-            count = lone_before_tool(body.surface, space, body, b, tools, t, first + t, found, count)
-            b += 1
+        count = find_lone_before_tool(space, bodies, tools, t, first + t, found, count)
+    return count
+
+
+@kernel
+def find_lone_before_tool(space, bodies, tools, t, against, found, count):
+    """`lone_before_tool` of every body; of its own, as in the loop over tools the types of a scene in one direction were not found."""
+    b = 0
+    for body in literal_unroll(bodies):
+        count = lone_before_tool(body.surface, space, body, b, tools, t, against, found, count)
+        b += 1
     return count
 
 

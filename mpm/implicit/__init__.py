@@ -1,9 +1,13 @@
 """Implicit mechanics: steps of seconds where explicit ones follow every wave (docs/physics.md 17).
 
-Each step minimises an incremental potential over nodal displacements, by Newton's method and a banded Cholesky factor, the true inertia left in.
+Each step minimises an incremental potential over nodal displacements, by Newton's method, the true inertia left in.
 nodes     weights, numbering, masses and ghost penalty of one step, at the positions of its start
-assemble  potential, residual and tangent of the particles
-contact   the same of pieces of surface at contact walls
+trial     increment, strains, gradients in the moved shape
+spans     F-bar: changes of volume averaged over knot spans, where a body asks for it
+assemble  potential, residual and tangent of the particles in one and two directions
+volume    the same in three
+matrix    a band and its Cholesky factor, or blocks and conjugate gradients
+contact   the same of pieces of surface at contact walls and tools, with friction
 newton    the minimisation: line search, shifts
 deliver   what particles keep of the nodes' answer
 extrapolate  a step and two halves of it make one of order 2

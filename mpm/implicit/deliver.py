@@ -6,7 +6,8 @@ from mpm.basis import inverse_moment, stencil
 from mpm.boundary import directions
 from mpm.heat.local import heat_locally, latch, thermal_stress
 from mpm.heat.setting import condition
-from mpm.implicit.assemble import elastic_b, increment, sign, trial
+from mpm.implicit.spans import average_volumes, extra_strain
+from mpm.implicit.trial import increment, pushed, sign, trial
 from mpm.integrate.given_source import push_at
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
@@ -15,25 +16,55 @@ from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED
 from mpm.sources import Both, Given
-from mpm.state import Axisymmetric, Line, Load, NoExchange, NoSource, Plane, Surface
-from mpm.tensors import compose2, push2
+from mpm.state import Axisymmetric, Line, Load, NoExchange, NoSource, Plane, Surface, Volume
+from mpm.tensors import compose2, compose3
+
+
+@kernel(inline=True)
+def keep_b(B, i, found):
+    """b - 1 to particle i; a line has no shear."""
+    for k in range(min(B.shape[1], len(found))):
+        B[i, k] = found[k]
 
 
 @role
-def keep_b(space, B, i, xx, yy, zz, xy):
-    """b - 1 to particle i."""
+def compose(space, l1, l2, l3, axes):
+    """The tensor of these values along these axes."""
     raise TypeError(f"no implicit mechanics for {type(space).__name__}")
 
 
-@keep_b.register(Line)
-def keep_b_line(space, B, i, xx, yy, zz, xy):
-    B[i, 0], B[i, 1], B[i, 2] = xx, yy, zz
+@compose.register(Line)
+@compose.register(Plane)
+@compose.register(Axisymmetric)
+def compose_line_plane_or_axisymmetric(space, l1, l2, l3, axes):
+    xx, yy, xy = compose2(l1, l2, axes[0], axes[1])
+    return xx, yy, l3, xy
 
 
-@keep_b.register(Plane)
-@keep_b.register(Axisymmetric)
-def keep_b_plane_or_axisymmetric(space, B, i, xx, yy, zz, xy):
-    B[i, 0], B[i, 1], B[i, 2], B[i, 3] = xx, yy, zz, xy
+@compose.register(Volume)
+def compose_volume(space, l1, l2, l3, axes):
+    return compose3(l1, l2, l3, axes[0], axes[1], axes[2], axes[3], axes[4], axes[5])
+
+
+@role
+def swollen(space, b, extra):
+    """b - 1 with `extra` added to each logarithmic strain."""
+    raise TypeError(f"no implicit mechanics for {type(space).__name__}")
+
+
+@swollen.register(Line)
+@swollen.register(Plane)
+@swollen.register(Axisymmetric)
+def swollen_line_plane_or_axisymmetric(space, b, extra):
+    more = math.expm1(2.0 * extra)
+    return b[0] + more * (1.0 + b[0]), b[1] + more * (1.0 + b[1]), b[2] + more * (1.0 + b[2]), b[3] + more * b[3]
+
+
+@swollen.register(Volume)
+def swollen_volume(space, b, extra):
+    more = math.expm1(2.0 * extra)
+    xx, yy, zz = b[0] + more * (1.0 + b[0]), b[1] + more * (1.0 + b[1]), b[2] + more * (1.0 + b[2])
+    return xx, yy, zz, b[3] + more * b[3], b[4] + more * b[4], b[5] + more * b[5]
 
 
 @role
@@ -56,12 +87,10 @@ def stretch_surface(surface, i, A, D):
 @kernel
 def push_forward(F, i, A, D):
     """F_i <- (1 + A) F_i."""
-    if D == 1:
-        F[i, 0, 0] *= 1.0 + A[0]
-        return
-    for d in range(2):
-        f0, f1 = F[i, 0, d], F[i, 1, d]
-        F[i, 0, d], F[i, 1, d] = f0 + A[0] * f0 + A[1] * f1, f1 + A[2] * f0 + A[3] * f1
+    for d in range(D):
+        f0, f1, f2 = F[i, 0, d], F[i, min(1, D - 1), d], F[i, D - 1, d]
+        for a in range(D):
+            F[i, a, d] += A[D * a] * f0 + (A[D * a + 1] * f1 if D > 1 else 0.0) + (A[D * a + 2] * f2 if D > 2 else 0.0)
 
 
 @role
@@ -164,9 +193,10 @@ def deliver(space, body, nodes, u, dt, work, report):
     particles, D, h = body.particles, directions(space), space.h
     x, M = particles.x, nodes.w.shape[1]
     report[WORKED] += work
+    average_volumes(nodes.spans, space, body, nodes, u)
     for p in range(x.shape[0]):
-        A = increment(space, nodes, u, x, p)
-        _, _, c, s, trace, d1, d2, d3, size, grow, sound = trial(space, particles.B, A, p)
+        A, extra = increment(space, nodes, u, x, p), extra_strain(nodes.spans, p)
+        _, axes, trace, d, size, grow, sound = trial(space, particles.B, A, extra, p)
         J = particles.J[p] * (1.0 + grow)
         if not sound or not 1e-3 < J < 1e3:
             report[CODE], report[PARTICLE] = INVERTED if not sound else OVERSTRETCHED, p
@@ -180,14 +210,15 @@ def deliver(space, body, nodes, u, dt, work, report):
         if lost > 0.0:
             lam, mu = moduli(elastic)
             mean = (thermal - pressure) / (3.0 * lam + 2.0 * mu)
-            xx, yy, xy = compose2(math.expm1(2.0 * (mean + part * d1)), math.expm1(2.0 * (mean + part * d2)), c, s)
-            keep_b(space, particles.B, p, xx, yy, math.expm1(2.0 * (mean + part * d3)), xy)
+            found = compose(space, math.expm1(2.0 * (mean + part * d[0])), math.expm1(2.0 * (mean + part * d[1])), math.expm1(2.0 * (mean + part * d[2])), axes)
             trace = 3.0 * mean
         else:
-            xx, yy, zz, xy = push2(elastic_b(space, particles.B, p), A)
-            keep_b(space, particles.B, p, xx, yy, zz, xy)
+            found = pushed(space, particles.B, A, p)
+            if extra != 0.0:
+                found = swollen(space, found, extra)
             mean, part = trace / 3.0, 1.0
-        report[STRAIN] = min(report[STRAIN], mean + part * min(d1, d2, d3))
+        keep_b(particles.B, p, found)
+        report[STRAIN] = min(report[STRAIN], mean + part * min(d[0], d[1], d[2]))
         particles.J[p] = J
         density = particles.m[p] / particles.V0[p]
         gained = heat_locally(body.heating, body.thermal, p, density, trace - before, lost)
@@ -198,8 +229,8 @@ def deliver(space, body, nodes, u, dt, work, report):
         latch(body.expansion, body.thermal, p)
         stretch(body.surface, p, A, D)
         pass_time(body.source, p, A, D, dt)
-        largest = max(abs(A[0]), abs(A[1]), abs(A[2]), abs(A[3]), abs(A[4]))
-        report[RATE] = max(report[RATE], largest)
+        for a in A:
+            report[RATE] = max(report[RATE], abs(a))
         report[SWELL] = max(report[SWELL], J)
         slopes(space, particles, nodes, u, p, dt, M, D, h)
         speed = 0.0
@@ -216,14 +247,16 @@ def slopes(space, particles, nodes, u, p, dt, M, D, h):
         particles.v[p, a] = 0.0
         for d in range(D):
             particles.C[p, a, d] = 0.0
-    one, two = stencil(space.basis, particles.x[p, 0] / h), stencil(space.basis, particles.x[p, D - 1] / h)
-    last = len(two[1]) if D == 2 else 1
+    one, two = stencil(space.basis, particles.x[p, 0] / h), stencil(space.basis, particles.x[p, min(1, D - 1)] / h)
+    three, count = stencil(space.basis, particles.x[p, D - 1] / h), len(one[1])
     for k in range(M):
-        i, j = k // last, k % last
+        i, j, q = (k, 0, 0) if D == 1 else (k // count, k % count, 0) if D == 2 else (k // (count * count), k // count % count, k % count)
         n, w = nodes.node[p, k], nodes.w[p, k] / dt
         for a in range(D):
             v = w * sign(nodes, p, k, a) * u[n, a]
             particles.v[p, a] += v
             particles.C[p, a, 0] += v * one[3][i] * inverse_moment(space.basis) / h
-            if D == 2:
+            if D > 1:
                 particles.C[p, a, 1] += v * two[3][j] * inverse_moment(space.basis) / h
+            if D > 2:
+                particles.C[p, a, 2] += v * three[3][q] * inverse_moment(space.basis) / h

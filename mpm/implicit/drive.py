@@ -6,8 +6,8 @@ Error    the larger of rms |x_2 - x_1|/L and WARMER rms |Theta_2 - Theta_1|/(hig
          dt clip(0.9 sqrt(REACH tolerance/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
          stresses are slightly out of balance with the new weights, and the move that mends this does not shrink with dt. The first step is exempt:
          a body that is put on its wall must sag.
-Kinetic  energy of motion over what gravity and loads have worked so far. Where a material without viscosity flows and it stays above SWIFT for PATIENCE steps,
-         the body falls down under more than it bears: inertia carries it, and backward Euler damps that. The run ends (no_equilibrium).
+Kinetic  energy of motion over what gravity, loads and tools have worked so far. Where a material without viscosity flows and it stays above SWIFT for
+         PATIENCE steps, the body falls down under more than it bears: inertia carries it, and backward Euler damps that. The run ends (no_equilibrium).
 Failure  everything as before the step, a quarter of dt; below LEAST of the first step the run ends (no_equilibrium).
 """
 
@@ -18,18 +18,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm.boundary import directions
-from mpm.contact.skin import lay_skins, new_skin
-from mpm.implicit.contact import STIFFNESS, may_touch
+from mpm.implicit.contact import STIFFNESS, keep_books, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
 from mpm.implicit.extrapolate import extrapolate
-from mpm.implicit.newton import Problem, minimise
+from mpm.implicit.newton import Problem, solve
 from mpm.implicit.nodes import new_nodes
 from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
 from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, INVERTED, NO_EQUILIBRIUM, Outcome, outcome
-from mpm.state import Surface
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
 TOLD = {"rejected": "steps_rejected", "failed": "steps_failed", "iterations": "newton_iterations", "shifts": "newton_shifts", "deepest": "wall_depth",
@@ -37,6 +35,7 @@ TOLD = {"rejected": "steps_rejected", "failed": "steps_failed", "iterations": "n
 SWIFT, PATIENCE = 0.05, 20
 REACH = 3.0  # the error of the first-order step may be this much of the tolerance: what is kept is closer
 LEAST = 1e-4  # of the first step that was tried
+STRIDE = 0.5  # cells that a tool may move in a step
 REJECT = 2.0  # of what is aimed at: an error from which a step is made again
 CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver")  # what a shorter step may cure
 
@@ -48,7 +47,6 @@ class Implicit:
     tolerance: float
     size: float
     first: float  # step to begin with [s]
-    stops: np.ndarray  # (3, 2) friction of contact walls, below 0 none
     walls: np.ndarray  # (3, 2) kinds
 
     def begin(self) -> dict:
@@ -71,7 +69,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         if not (sound := guards.block(scene, clock)).ok:
             return sound
         told, left = clock.told, until - clock.time
-        count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)))
+        count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)), math.ceil(left * fastest(scene, clock, left) / (STRIDE * scene.space.h)))
         dt, before = left / count, keep(scene, clock)
         error, found = pair(scene, clock, work, dt, warm)
         told = clock.told
@@ -92,6 +90,11 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     scene.facts |= {"mechanics": "implicit", **{name: clock.told[name] for name in TOLD}}
     return guards.whole(scene, clock)
+
+
+def fastest(scene, clock, span: float) -> float:
+    """The fastest that a tool may go for `span` from now on [m/s]."""
+    return scene.meeting.pace(clock.time, span) if scene.meeting is not None else 0.0
 
 
 def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
@@ -134,19 +137,19 @@ def too_far(scene, told: dict, error: float) -> bool:
 
 def keep(scene, clock) -> tuple:
     """All that a step may change."""
-    touched = scene.meeting.touching.touched.copy() if scene.meeting is not None else None
-    return {path: array.copy() for path, array in arrays(scene.bodies).items()}, copy.deepcopy(vars(clock)), touched
+    met = copy.deepcopy(scene.meeting.memory()) if scene.meeting is not None else None
+    return {path: array.copy() for path, array in arrays(scene.bodies).items()}, copy.deepcopy(vars(clock)), met
 
 
 def put_back(scene, clock, before: tuple) -> dict:
     """The state before a step; what Newton's method was asked stays counted."""
-    bodies, past, touched = before
+    bodies, past, met = before
     counts = {name: clock.told[name] for name in ("iterations", "shifts")}
     fill(scene.bodies, bodies)
     clock.recall(past)
     clock.told |= counts
-    if touched is not None:
-        scene.meeting.touching.touched[:] = touched
+    if met is not None:
+        scene.meeting.recall(met)
     return clock.told
 
 
@@ -154,20 +157,19 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     """One step of dt; particles move only where it is ok."""
     how, told, body = scene.implicit, clock.told, scene.bodies[0]
     lam, mu = stiffest(body)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, how.walls, scene.gravity[-1], mu)
+    nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, how.walls, scene.gravity[-1], mu)
     pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
-    skin = new_skin(directions(scene.space), np.array([0, len(body.surface.owner) if isinstance(body.surface, Surface) else 0]))
-    lay_skins(scene.space, scene.bodies, skin)
-    pushed = may_touch(scene.space, skin, how.stops, STIFFNESS * (lam + 2 * mu) / scene.space.h)
-    answer = minimise(Problem(scene.space, body, nodes, pushed, dt, drag), dt * nodes.v)
+    pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
+    answer = solve(Problem(scene.space, body, nodes, pushed, dt, drag), dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
     if answer.u is None:
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
     work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2))
     clock.reset()
     report = clock.reports[0]
+    told["work"] += abs(keep_books(scene, nodes, pushed, answer.u, answer.depth, dt))
     deliver(scene.space, body, nodes, answer.u, dt, work, report)
     if report[CODE] != 0:
         report[STEP] = 0
@@ -183,10 +185,6 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         said = f"(inertia carries it: energy of motion is {100 * kinetic:.0f} % of the work of gravity and loads)"
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail=said)
     told["deepest"] = max(told["deepest"], float(answer.depth.max(initial=0.0)))
-    if scene.meeting is not None:
-        for row in np.unique(pushed.row[answer.depth > 0]):
-            touched = scene.meeting.touched(0, int(row))
-            touched[np.unique(pushed.piece[(answer.depth > 0) & (pushed.row == row)])] += dt
     return outcome(COMPLETED)
 
 

@@ -15,6 +15,7 @@ from mpm.state import Setting, Softening
 
 CARRIED = ("x", "v", "C", "B", "J", "c", "F", "X", "k", "most")
 SUMS = ("exchanged", "local", "dissipated", "repaired", "unrepaired", "worked", "swelled", "softened")
+BOOKS = ("pushed", "turned", "spread", "worked", "rubbed")  # of what walls and tools do (mpm.contact.step.Touching)
 STILL = 1e-3  # K: a span of temperatures below which nothing is warmer than anything
 WARMER = 0.1  # weight of the error of temperature, over the span of temperatures so far, beside that of shape over the body's size
 
@@ -34,14 +35,18 @@ def latched(expansion):
 
 def upright(body) -> bool:
     """Whether no particle is inverted: J > 0, and b positive."""
-    B = 1.0 + body.particles.B[:, :3]
-    turned = body.particles.B[:, 3] if body.particles.B.shape[1] > 3 else 0.0
-    return bool(np.min(body.particles.J) > 0 and np.min(B) > 0 and np.min(B[:, 0] * B[:, 1] - turned * turned) > 0)
+    B = np.zeros((len(body.particles.J), 6))
+    B[:, : body.particles.B.shape[1]] = body.particles.B
+    B[:, :3] += 1.0
+    b1, b2, b3, xy, yz, xz = B.T
+    plane = b1 * b2 - xy * xy
+    whole = b3 * plane - b1 * yz * yz - b2 * xz * xz + 2 * xy * yz * xz
+    return bool(min(map(np.min, (body.particles.J, b1, b2, b3, plane, whole))) > 0)
 
 
 def extrapolate(scene, clock, work, once: tuple, start: tuple) -> float:
     """The state after two half steps becomes that of order 2, with `once` after one whole step and `start` before both; returns the error of the step."""
-    (first, past, _), (before, *_), body, now = once, start, scene.bodies[0], arrays(scene.bodies)
+    (first, past, met), (before, *_), body, now = once, start, scene.bodies[0], arrays(scene.bodies)
     theta, bounds, gap = now.get("0.thermal.theta"), None, now["0.particles.x"] - first["0.particles.x"]
     error = float(np.sqrt(np.mean(np.sum(gap * gap, axis=1)))) / scene.implicit.size
     if theta is not None:
@@ -51,6 +56,9 @@ def extrapolate(scene, clock, work, once: tuple, start: tuple) -> float:
         hotter(body.thermal.alpha, theta, first["0.thermal.theta"], body.thermal.zero)
     for name in SUMS:
         setattr(clock, name, 2 * getattr(clock, name) - past[name])
+    for name in BOOKS if met is not None else ():
+        array = getattr(scene.meeting.touching, name)
+        array += array - met[name]
     for path, array in now.items():
         if path.rpartition(".")[2] in CARRIED:
             array += array - first[path]

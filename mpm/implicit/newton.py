@@ -9,14 +9,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs
 
 from mpm.implicit.assemble import assemble
-from mpm.implicit.contact import push_back
+from mpm.implicit.contact import CLOSER, push_back
+from mpm.implicit.matrix import Band, add_diagonal, inverted, new_matrix
 from mpm.implicit.nodes import third_differences
+from mpm.implicit.volume import assemble_volume
 
 CLOSE, SQUARE, MOST_MOVE = 1e-5, 1e-6, 0.5  # cells
-ITERATIONS, HALVINGS, SHIFTS = 30, 30, 12
+ITERATIONS, HALVINGS, SHIFTS, LAGS = 30, 30, 12, 20
 FIRST_SHIFT, ARMIJO = 1e-6, 1e-4
 
 
@@ -41,22 +42,24 @@ class Problem:
     dt: float
     drag: float
 
-    def potential(self, u: np.ndarray, r: np.ndarray, band: np.ndarray, depth: np.ndarray, want: bool) -> float:
-        """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (lower band)."""
+    def potential(self, u: np.ndarray, r: np.ndarray, matrix, depth: np.ndarray, want: bool) -> float:
+        """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (mpm.implicit.matrix)."""
         nodes, dt = self.nodes, self.dt
         if want:
-            r[:], band[:] = 0.0, 0.0
-        total = assemble(self.space, self.body, nodes, u, dt, r, band, want)
+            r[:], matrix.values[:] = 0.0, 0.0
+        if isinstance(matrix, Band):
+            total = assemble(self.space, self.body, nodes, u, dt, r, matrix.values, want)
+        else:
+            total = assemble_volume(self.space, self.body, nodes, u, dt, r, matrix, want)
         if not math.isfinite(total):
             return math.inf
-        total += third_differences(nodes, u, r, band, want)
-        total += push_back(self.space, nodes, self.pushed, u, r, band, want, depth)
+        total += third_differences(nodes, u, r, matrix, want)
+        total += push_back(nodes, self.pushed, u, r, matrix, want, depth)
         late, inert, slow = u - dt * nodes.v, nodes.m[:, None] / (dt * dt), self.drag * nodes.m[:, None] / dt
         total += float(0.5 * np.sum(inert * late * late) + 0.5 * np.sum(slow * u * u) - np.sum(nodes.push * u))
         if want:
             r += inert * late + slow * u - nodes.push
-            free = nodes.eq >= 0
-            band[nodes.eq[free], 0] += np.broadcast_to(inert + slow, u.shape)[free]
+            add_diagonal(matrix, nodes, np.broadcast_to(inert + slow, u.shape))
         return total
 
     def move(self, step: np.ndarray) -> float:
@@ -65,20 +68,38 @@ class Problem:
         return float(np.max(np.einsum("pk,pk->p", self.nodes.w, size[self.nodes.node])))
 
 
+def solve(problem: Problem, guess: np.ndarray) -> Answer:
+    """The displacements of a step, from a guess (A, D) that is zero where walls hold: minima until friction is that of its own normal forces."""
+    answer, pushed = minimise(problem, guess), problem.pushed
+    rubs = (pushed.mu > 0) & np.isfinite(pushed.mu)
+    if not rubs.any():
+        return answer
+    for _ in range(LAGS):
+        if answer.u is None:
+            return answer
+        now = pushed.mu[rubs] * pushed.stiff[rubs] * answer.depth[rubs]
+        if np.sum(np.abs(now - pushed.limit[rubs])) <= CLOSER * np.sum(now):
+            return answer
+        pushed.limit[rubs] = now
+        again = minimise(problem, answer.u)
+        answer = Answer(again.u, answer.iterations + again.iterations, answer.shifts + again.shifts, again.depth)
+    return Answer(None, answer.iterations, answer.shifts, answer.depth)
+
+
 def minimise(problem: Problem, guess: np.ndarray) -> Answer:
-    """The displacements of a step, from a guess (A, D) that is zero where walls hold."""
+    """The minimum of the potential, with friction as it is."""
     nodes, h = problem.nodes, problem.space.h
-    free, n = nodes.eq >= 0, nodes.unknowns
-    r, band, depth = np.empty(guess.shape), np.empty((n, nodes.band + 1)), np.zeros(len(problem.pushed.owner))
+    free, r, matrix = nodes.eq >= 0, np.empty(guess.shape), new_matrix(problem.space, nodes)
+    depth = np.zeros(len(problem.pushed.owner))
     u, shifts = guess.copy(), 0
-    Pi = problem.potential(u, r, band, depth, True)
+    Pi = problem.potential(u, r, matrix, depth, True)
     if not math.isfinite(Pi) and u.any():
         u[:] = 0.0
-        Pi = problem.potential(u, r, band, depth, True)
+        Pi = problem.potential(u, r, matrix, depth, True)
     if not math.isfinite(Pi):
         return Answer(None, 0, 0, depth)
     for count in range(1, ITERATIONS + 1):
-        step, tried = newton_step(problem, u, r, band, depth)
+        step, tried = newton_step(problem, u, r, matrix, depth)
         shifts += tried
         if step is None:
             return Answer(None, count, shifts, depth)
@@ -86,7 +107,7 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
         share = min(1.0, MOST_MOVE * h / full) if full > 0 else 1.0
         slope, small = float(np.sum(r[free] * step[free])), full < CLOSE * h
         for _ in range(HALVINGS):
-            new = problem.potential(u + share * step, r, band, depth, False)
+            new = problem.potential(u + share * step, r, matrix, depth, False)
             if small or new <= Pi + ARMIJO * share * slope + 1e-13 * abs(Pi):
                 break
             share *= 0.5
@@ -97,25 +118,16 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
         u += share * step
         if small or (count > 1 and share == 1.0 and not tried and full * full / h < SQUARE * h):
             return Answer(u, count, shifts, depth)
-        Pi = problem.potential(u, r, band, depth, True)
+        Pi = problem.potential(u, r, matrix, depth, True)
     return Answer(None, ITERATIONS, shifts, depth)
 
 
-def newton_step(problem: Problem, u, r, band, depth) -> tuple[np.ndarray | None, int]:
-    """(-K^-1 r on the nodes, shifts that it took); None where K stays indefinite. band is spent."""
-    nodes, shift = problem.nodes, 0.0
-    free = nodes.eq >= 0
+def newton_step(problem: Problem, u, r, matrix, depth) -> tuple[np.ndarray | None, int]:
+    """(-K^-1 r on the nodes, shifts that it took); None where K stays indefinite. The matrix is spent."""
     for tried in range(SHIFTS):
         if tried:
-            shift = FIRST_SHIFT if tried == 1 else 10 * shift
-            problem.potential(u, r, band, depth, True)
-            band[:, 0] += shift * np.abs(band[:, 0])
-        factor, info = dpbtrf(band.T, lower=1, overwrite_ab=1)
-        if info == 0:
-            right = np.empty(nodes.unknowns)
-            right[nodes.eq[free]] = -r[free]
-            found, _ = dpbtrs(factor, right, lower=1)
-            step = np.zeros(u.shape)
-            step[free] = found[nodes.eq[free]]
-            return (step, tried) if np.isfinite(found).all() else (None, tried)
+            problem.potential(u, r, matrix, depth, True)
+        step = inverted(matrix, problem.nodes, r, FIRST_SHIFT * 10.0 ** (tried - 1) if tried else 0.0)
+        if step is not None:
+            return step, tried
     return None, SHIFTS

@@ -6,12 +6,15 @@ Ghost penalty   GAMMA mu r h^(D-2) |u_{i-1} - 3 u_i + 3 u_{i+1} - u_{i+2}|^2/2 o
                 differences at the surface, and a cubic field is not seen (E. Burman, C. R. Acad. Sci. Paris 348 (2010) 1217).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from mpm.basis import stencil
 from mpm.boundary import CONTACT, STICK, directions, extents
+from mpm.implicit.matrix import add
+from mpm.implicit.spans import new_spans
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
 from mpm.transfer import uses_basis_gradient
@@ -33,6 +36,8 @@ class Nodes(NamedTuple):
     eq: np.ndarray  # (A, D) number of the unknown; -1: held
     lines: np.ndarray  # (L, 4) nodes in a row under the ghost penalty
     stiff: np.ndarray  # (L,) [N/m]
+    spans: object  # NoSpans, or Spans over which volume changes are averaged
+    places: np.ndarray  # (A, 3) on the grid
     band: int  # unknowns below the diagonal that a row reaches
     unknowns: int
 
@@ -43,38 +48,41 @@ def lay(space, gradient, particles, walls, gravity, flat, flip, w, g, sums):
     h, D, shape, x = space.h, directions(space), extents(space), particles.x
     basis = uses_basis_gradient(gradient)
     for p in range(x.shape[0]):
-        one = stencil(space.basis, x[p, 0] / h)
-        two = stencil(space.basis, x[p, D - 1] / h)
-        k = 0
+        one, two = stencil(space.basis, x[p, 0] / h), stencil(space.basis, x[p, min(1, D - 1)] / h)
+        three, k = stencil(space.basis, x[p, D - 1] / h), 0
         for i in range(len(one[1])):
-            for j in range(len(two[1]) if D == 2 else 1):
-                wi, gi = one[1][i], (one[2][i] if basis else one[4][i]) / h
-                wj, gj = (two[1][j], (two[2][j] if basis else two[4][j]) / h) if D == 2 else (1.0, 0.0)
-                weight = wi * wj
-                w[p, k], g[p, k, 0] = weight, gi * wj
-                if D == 2:
-                    g[p, k, 1] = wi * gj
-                turn, at = 0, 0
-                for c in range(D):
-                    n = one[0] + i if c == 0 else two[0] + j
-                    for side in range(2):
-                        wall = PAD if side == 0 else shape[c] - 1 - PAD
-                        if walls[c, side] < CONTACT and (n < wall if side == 0 else n > wall):
-                            n = 2 * wall - n
-                            turn ^= 2**D - 1 if walls[c, side] == STICK else 1 << c
-                    at = at * shape[1] + n if c == 1 else n
-                flat[p, k], flip[p, k] = at, turn
-                mass = weight * particles.m[p]
-                sums[at, 0] += mass
-                sums[at, 1] += weight * particles.V0[p] * particles.J[p]
-                for c in range(D):
-                    sign = -1.0 if turn >> c & 1 else 1.0
-                    v = particles.v[p, c]
-                    for d in range(D):
-                        v += particles.C[p, c, d] * h * (one[3][i] if d == 0 else two[3][j])
-                    sums[at, 2 + c] += sign * mass * v
-                    sums[at, 2 + D + c] += sign * mass * gravity[c]
-                k += 1
+            for j in range(len(two[1]) if D > 1 else 1):
+                for q in range(len(three[1]) if D > 2 else 1):
+                    wi, gi = one[1][i], (one[2][i] if basis else one[4][i]) / h
+                    wj, gj = (two[1][j], (two[2][j] if basis else two[4][j]) / h) if D > 1 else (1.0, 0.0)
+                    wl, gl = (three[1][q], (three[2][q] if basis else three[4][q]) / h) if D > 2 else (1.0, 0.0)
+                    weight = wi * wj * wl
+                    w[p, k], g[p, k, 0] = weight, gi * wj * wl
+                    if D > 1:
+                        g[p, k, 1] = wi * gj * wl
+                    if D > 2:
+                        g[p, k, 2] = wi * wj * gl
+                    turn, at = 0, 0
+                    for c in range(D):
+                        n = one[0] + i if c == 0 else two[0] + j if c == 1 else three[0] + q
+                        for side in range(2):
+                            wall = PAD if side == 0 else shape[c] - 1 - PAD
+                            if walls[c, side] < CONTACT and (n < wall if side == 0 else n > wall):
+                                n = 2 * wall - n
+                                turn ^= 2**D - 1 if walls[c, side] == STICK else 1 << c
+                        at = at * shape[c] + n
+                    flat[p, k], flip[p, k] = at, turn
+                    mass = weight * particles.m[p]
+                    sums[at, 0] += mass
+                    sums[at, 1] += weight * particles.V0[p] * particles.J[p]
+                    for c in range(D):
+                        sign = -1.0 if turn >> c & 1 else 1.0
+                        v = particles.v[p, c]
+                        for d in range(D):
+                            v += particles.C[p, c, d] * h * (one[3][i] if d == 0 else two[3][j] if d == 1 else three[3][q])
+                        sums[at, 2 + c] += sign * mass * v
+                        sums[at, 2 + D + c] += sign * mass * gravity[c]
+                    k += 1
 
 
 @kernel
@@ -92,19 +100,20 @@ def breadth(eq, node):
     return most
 
 
-def new_nodes(space, gradient, particles, walls, gravity, mu: float) -> Nodes:
+def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) -> Nodes:
     """The nodes of a step from the particles' positions; mu [Pa] scales the ghost penalty."""
     D, shape, N = directions(space), extents(space), len(particles.m)
     M = len(stencil(space.basis, 0.0)[1]) ** D
     flat, flip, w, g = np.empty((N, M), np.int64), np.empty((N, M), np.int8), np.empty((N, M)), np.empty((N, M, D))
-    sums = np.zeros((shape[0] * shape[1], 2 + 2 * D))
+    n = shape[0] * shape[1] * shape[2]
+    sums = np.zeros((n, 2 + 2 * D))
     lay(space, gradient, particles, walls, gravity, flat, flip, w, g, sums)
     active = np.flatnonzero(sums[:, 0] > 0)
-    places = np.stack(np.divmod(active, shape[1]), axis=1)[:, :D]
+    places = np.stack(np.unravel_index(active, shape), axis=1)
     if D == 2 and np.ptp(places[:, 0]) < np.ptp(places[:, 1]):  # the shorter direction varies fastest: a narrow band
         order = np.lexsort(places.T)
         active, places = active[order], places[order]
-    number = np.full(shape[0] * shape[1], -1)
+    number = np.full(n, -1)
     number[active] = np.arange(len(active))
     held, double = np.zeros((len(active), D), bool), np.ones(len(active))
     for axis, side in np.argwhere(walls[:D] < CONTACT):
@@ -119,7 +128,7 @@ def new_nodes(space, gradient, particles, walls, gravity, mu: float) -> Nodes:
     fill = double * sums[active, 1] / (radius * space.h**D)
     lines, stiff = [np.zeros((0, 4), np.int64)], [np.zeros(0)]
     for axis in range(D):
-        stride = shape[1] if axis == 0 and D == 2 else 1
+        stride = math.prod(shape[axis + 1 :])
         row = np.stack([number[np.minimum(active + k * stride, len(number) - 1)] for k in range(4)], axis=1)
         row = row[(places[:, axis] + 3 < shape[axis]) & (row >= 0).all(axis=1)]
         row = row[fill[row].min(axis=1) < FILLED]
@@ -131,12 +140,14 @@ def new_nodes(space, gradient, particles, walls, gravity, mu: float) -> Nodes:
     m = sums[active, 0]
     v = np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None])
     push = sums[active, 2 + D :].copy()
-    return Nodes(node, flip, w, g, m, v, push, eq, lines, stiff, int(max(breadth(eq, node), spread.max(), 0)), int((~held).sum()))
+    spans = new_spans(locking, space, particles, M)
+    band = int(max(breadth(eq, node), spread.max(), 0)) if D < 3 else 0
+    return Nodes(node, flip, w, g, m, v, push, eq, lines, stiff, spans, places, band, int((~held).sum()))
 
 
 @kernel
-def third_differences(nodes, u, r, band, want):
-    """The ghost penalty's part of the potential; of residual r (A, D) and lower band where wanted."""
+def third_differences(nodes, u, r, matrix, want):
+    """The ghost penalty's part of the potential; of residual r (A, D) and matrix where wanted."""
     total, D, c4 = 0.0, u.shape[1], (1.0, -3.0, 3.0, -1.0)
     for s in range(nodes.lines.shape[0]):
         for c in range(D):
@@ -147,9 +158,6 @@ def third_differences(nodes, u, r, band, want):
             if want:
                 for a in range(4):
                     r[nodes.lines[s, a], c] += nodes.stiff[s] * c4[a] * jump
-                    i = nodes.eq[nodes.lines[s, a], c]
                     for b in range(4):
-                        j = nodes.eq[nodes.lines[s, b], c]
-                        if i >= j >= 0:
-                            band[j, i - j] += nodes.stiff[s] * c4[a] * c4[b]
+                        add(matrix, nodes, nodes.lines[s, a], c, nodes.lines[s, b], c, nodes.stiff[s] * c4[a] * c4[b])
     return total

@@ -8,6 +8,7 @@ Roles (the law chooses the function; all work compiled and in plain Python)
                                                                                       flow laws: no_flow, radial, clipped
           moduli_lanes(law, theta), flow_lanes(law, trace, deviator, ...): the same over lanes of eight particles (mpm.lanes)
           tangent(law, elastic, trace, size, thermal, theta, dt): potential, stress and slopes of one step, for implicit mechanics; no_flow, radial
+          response(elastic, law, trace, d, ...): the same along principal axes, of both laws; turning(elastic, ...)   hencky, neo_hookean
           warmed(law, theta) -> the elastic law at a temperature;  settled(law, J) -> the flow law at a volume   itself, but for warm, porous
           value(law, theta), enthalpy(law, theta), temperature_of(law, h, guess)      laws of temperature: laws
           values(law, theta), enthalpies(law, theta), temperatures(law, h, guess)     over lanes: lanes
@@ -33,7 +34,22 @@ from mpm.materials.no_flow import NoFlow
 from mpm.materials.porous import Porous
 from mpm.materials.radial import EllipseRadial
 from mpm.materials.return_maps import return_map
-from mpm.materials.roles import energy, enthalpy, flow, flow_lanes, moduli, moduli_lanes, settled, stress, tangent, temperature_of, value, warmed
+from mpm.materials.roles import (
+    energy,
+    enthalpy,
+    flow,
+    flow_lanes,
+    moduli,
+    moduli_lanes,
+    response,
+    settled,
+    stress,
+    tangent,
+    temperature_of,
+    turning,
+    value,
+    warmed,
+)  # fmt: skip
 from mpm.materials.setting import GAS, Alike, Arrhenius, Condition, Sets
 from mpm.materials.warm import HenckyWarm
 
@@ -43,5 +59,5 @@ FLOW = (NoFlow, EllipseRadial, EllipseClipped)
 __all__ = [
     "ELASTIC", "FLOW", "GAS", "LAWS", "Alike", "Arrhenius", "Bump", "Condition", "Constant", "EllipseClipped", "EllipseRadial", "Hencky", "HenckyWarm",
     "Logistic", "NeoHookean", "NoFlow", "Porous", "Sets", "Table", "energy", "enthalpies", "enthalpy", "flow", "flow_lanes", "moduli", "moduli_lanes",
-    "return_map", "settled", "stress", "table", "tangent", "temperature_of", "temperatures", "value", "values", "warmed",
+    "response", "return_map", "settled", "stress", "table", "tangent", "temperature_of", "temperatures", "turning", "value", "values", "warmed",
 ]  # fmt: skip

@@ -1,9 +1,11 @@
 """Hencky elasticity: psi = mu e.e + lam/2 (tr e)^2 in principal logarithmic strains (docs/physics.md 1)."""
 
+import math
 from typing import NamedTuple
 
 from mpm.lanes import like
-from mpm.materials.roles import energy, moduli, moduli_lanes, stress
+from mpm.materials.ellipse import SQRT6
+from mpm.materials.roles import energy, moduli, moduli_lanes, response, stress, tangent, turning
 
 
 class Hencky(NamedTuple):
@@ -37,3 +39,23 @@ def moduli_hencky(law):
 @moduli_lanes.register(Hencky)
 def moduli_lanes_hencky(law, theta):
     return like(theta, law.lam), like(theta, law.mu)
+
+
+@response.register(Hencky)
+def response_hencky(elastic, law, trace, d, size, thermal, theta, dt, tau, a):
+    """tau_i = 2 mu share d_i - p;  a as docs/physics.md 17.5."""
+    mu, K, unit = elastic.mu, elastic.lam + 2.0 * elastic.mu / 3.0, 1.0 / size if size > 0.0 else 0.0
+    W, p, share, c11, c12, c22, _, good = tangent(law, elastic, trace, size, thermal, theta, dt)
+    for i in range(3):
+        tau[i] = 2.0 * mu * share * d[i] - p
+        for j in range(3):
+            ni, nj = unit * d[i], unit * d[j]
+            a[i, j] = K * c11 - SQRT6 * mu * c12 * (ni + nj) + 2.0 * mu * (c22 - share) * ni * nj - 2.0 / 3.0 * mu * share
+        a[i, i] += 2.0 * mu * share
+    return W, share, good
+
+
+@turning.register(Hencky)
+def turning_hencky(elastic, share, li, lj):
+    apart = (li - lj) / (1.0 + lj)
+    return elastic.mu * share * (math.log1p(apart) / apart if abs(apart) > 1e-12 else 1.0) / (1.0 + lj)

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from mpm.materials.roles import energy, moduli, stress, warmed
+from mpm.materials.roles import energy, moduli, response, stress, turning, warmed
 
 
 class NeoHookean(NamedTuple):
@@ -38,3 +38,23 @@ def moduli_neo_hookean(law):
 @warmed.register(NeoHookean)
 def warmed_neo_hookean(law, theta):
     return law
+
+
+@response.register(NeoHookean)
+def response_neo_hookean(elastic, law, trace, d, size, thermal, theta, dt, tau, a):
+    """a_ij = 2 mu exp(2 e_i) delta_ij + lam J (2 J - 1); no flow, no thermal stress."""
+    swell = math.expm1(trace)
+    pressure, stretched = elastic.lam * (1.0 + swell) * swell, 0.0
+    for i in range(3):
+        grown = math.expm1(2.0 * (trace / 3.0 + d[i]))
+        stretched += grown
+        tau[i] = elastic.mu * grown + pressure
+        for j in range(3):
+            a[i, j] = elastic.lam * (1.0 + swell) * (1.0 + 2.0 * swell)
+        a[i, i] += 2.0 * elastic.mu * (1.0 + grown)
+    return elastic.mu * (0.5 * stretched - trace) + 0.5 * elastic.lam * swell * swell, 1.0, True
+
+
+@turning.register(NeoHookean)
+def turning_neo_hookean(elastic, share, li, lj):
+    return elastic.mu

@@ -119,3 +119,18 @@ def tangent(law, elastic, trace, size, thermal, theta, dt):
     c12 = dp/dq_tr = (3 mu/K)^-1 dq/dp_tr. dissipated >= 0 [J/m3]; good false where the map failed (docs/physics.md 17).
     """
     raise missing(law, "tangent")
+
+
+@role
+def response(elastic, law, trace, d, size, thermal, theta, dt, tau, a):
+    """`tangent` along the axes of the trial strain, trace/3 + d with |d| = size, of elastic and flow law together: (W, share, good).
+
+    tau (3,) <- principal stresses [Pa], a (3, 3) <- dtau_i/deps_j; share = q/q_tr.
+    """
+    raise missing(elastic, "response")
+
+
+@role
+def turning(elastic, share, li, lj):
+    """(tau_i - tau_j)/(l_i - l_j) [Pa] of two eigenvalues of b_tr less one, exact where they are equal; share as `response` gives it."""
+    raise missing(elastic, "turning")

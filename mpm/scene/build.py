@@ -18,7 +18,7 @@ from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.course import course
 from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
-from mpm.scene.implicit import implicit
+from mpm.scene.implicit import implicit, kinks
 from mpm.scene.inventory import ticks
 from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.meeting import cornered, meeting, plan_meetings
@@ -220,7 +220,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
-        turns=(*moments(experiment), *(changes.turns if changes is not None else ())),
+        turns=(*moments(experiment), *(changes.turns if changes is not None else ()), *kinks(experiment, met)),
         implicit=implicit(experiment, space, bodies, met, times),
         watch=watch(experiment, exact),
     )

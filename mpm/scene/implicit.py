@@ -9,6 +9,13 @@ from mpm.integrate.timestep import limits
 FIRST = 0.01  # of a run: its first step, at most an output interval and the pace of explicit heat steps
 
 
+def kinks(experiment, met) -> tuple[float, ...]:
+    """Times at which a tool goes another way, comes or leaves: a step of seconds ends there, where explicit ones pass over."""
+    if experiment.method.mechanics != "implicit" or met is None or met.drive is None:
+        return ()
+    return tuple(sorted({float(when) for one in met.drive.told for when in (*one.times, *one.turning, *one.there) if 0 < when < experiment.time.end}))
+
+
 def implicit(experiment, space, bodies, met, times):
     """The Implicit of a scene; None where its mechanics is explicit, and then nothing of it is loaded."""
     if experiment.method.mechanics != "implicit":
@@ -20,4 +27,4 @@ def implicit(experiment, space, bodies, met, times):
     if first == "auto":
         pace = limits(space, directions(space), bodies, np.zeros((len(bodies), REPORT))).pace
         first = float(min(FIRST * times[-1], times[1], pace))
-    return Implicit(experiment.method.mechanics_tolerance, size, first, met.stops[0], met.walls[0])
+    return Implicit(experiment.method.mechanics_tolerance, size, first, met.walls[0])

@@ -4,48 +4,74 @@ import numpy as np
 import pytest
 
 import mpm
-from mpm.contact.skin import lay_skins, new_skin
 from mpm.implicit.contact import STIFFNESS, may_touch
+from mpm.implicit.matrix import Band, new_matrix, product
 from mpm.implicit.newton import Problem
 from mpm.implicit.nodes import new_nodes
 from mpm.scene.build import build
+from mpm.simulation import Clock
 
 
-def problem(disc, dimension, seed=3):
+def problem(disc, dimension, locking, seed=3):
     plane = {"grid": {"dimension": 2, "size": [8e-3, 8e-3], "cell": 1e-3},
              "bodies": {"disc": {"shape": {"box": {"lower": [1e-3, 0.02e-3], "upper": [4.3e-3, 2.7e-3]}}, "material": "dough"}}}  # fmt: skip
-    scene = build(mpm.load(disc | (plane if dimension == 2 else {})))
+    disc["method"]["locking"] = locking
+    space = {"grid": {"dimension": 3, "size": [8e-3] * 3, "cell": 1e-3}, "gravity": [0, 1, -9.81],
+             "bodies": {"disc": {"shape": {"box": {"lower": [1e-3, 0.5e-3, 0.02e-3], "upper": [3.3e-3, 2.6e-3, 2.7e-3]}}, "material": "dough"}},
+             "loads": [{"of": "disc", "side": "top", "traction": {"nominal": [0, 5, -20]}}]}  # fmt: skip
+    scene = build(mpm.load(disc | {2: plane, 3: space}.get(dimension, {})))
     body, rng = scene.bodies[0], np.random.default_rng(seed)
     body.particles.B[:] = rng.normal(scale=0.02, size=body.particles.B.shape)
     body.particles.v[:] = rng.normal(scale=1e-4, size=body.particles.v.shape)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, scene.implicit.walls, scene.gravity[-1], 4e3)
-    skin = new_skin(2, np.array([0, len(body.surface.owner)]))
-    lay_skins(scene.space, scene.bodies, skin)
-    skin.x[:, 1] -= 0.05e-3  # some in the wall
-    pushed = may_touch(scene.space, skin, scene.implicit.stops, STIFFNESS * 1e4 / scene.space.h)
-    assert len(pushed.owner) and len(nodes.lines) and (pushed.grip > 0).any()
+    nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, scene.implicit.walls, scene.gravity[-1], 4e3)
+    pushed = may_touch(scene, Clock(scene), 0.4, STIFFNESS * 1e4 / scene.space.h)
+    pushed = pushed._replace(gap=pushed.gap - 0.05e-3)  # some in the wall
+    pushed.limit[pushed.gap < 0] = np.resize([np.inf, 1e-3, 5e-5, 0.0], (pushed.gap < 0).sum())  # some hold, some slide
+    pushed.stretch[:, 0] = rng.normal(scale=1e-6, size=len(pushed.gap))
+    pushed.given[:, 1] = 1e-6
+    assert len(nodes.lines) and np.unique(pushed.limit).size == 4
     u = rng.normal(scale=2e-5, size=nodes.v.shape) * (nodes.eq >= 0)
     return Problem(scene.space, body, nodes, pushed, 0.4, 3.0), u
 
 
-@pytest.mark.parametrize("dimension", ["axisymmetric", pytest.param(2, marks=pytest.mark.slow)])
-def test_gradient_and_hessian(disc, dimension):
-    found, u = problem(disc, dimension)
+def dense(matrix, eq):
+    """The whole matrix by unknowns."""
+    n = eq.max() + 1
+    whole = np.zeros((n, n))
+    if isinstance(matrix, Band):
+        for j in range(n):
+            for k in range(min(matrix.values.shape[1], n - j)):
+                whole[j + k, j] = whole[j, j + k] = matrix.values[j, k]
+        return whole
+    out = np.zeros(eq.shape)
+    for j in range(n):
+        one = np.where(eq == j, 1.0, 0.0)
+        product(matrix, one, out)
+        whole[eq[eq >= 0], j] = out[eq >= 0]
+    return whole
+
+
+FBAR = {"fbar": {"own": 0.1}}
+
+
+@pytest.mark.parametrize(
+    ("dimension", "locking"),
+    [("axisymmetric", None), *(pytest.param(*case, marks=pytest.mark.slow) for case in [(2, None), (2, FBAR), ("axisymmetric", FBAR), (3, None), (3, FBAR)])],
+)
+def test_gradient_and_hessian(disc, dimension, locking):
+    found, u = problem(disc, dimension, locking)
     n, depth, eq = found.nodes.unknowns, np.zeros(len(found.pushed.owner)), found.nodes.eq
     free = eq >= 0
 
     def at(change, want=True):
-        r, band, moved = np.zeros(u.shape), np.zeros((n, found.nodes.band + 1)), u.copy()
+        r, matrix, moved = np.zeros(u.shape), new_matrix(found.space, found.nodes), u.copy()
         moved[free] += change[eq[free]]
-        Pi, gradient = found.potential(moved, r, band, depth, want), np.zeros(n)
+        Pi, gradient = found.potential(moved, r, matrix, depth, want), np.zeros(n)
         gradient[eq[free]] = r[free]
-        return Pi, gradient, band
+        return Pi, gradient, matrix
 
-    _, r, band = at(np.zeros(n))
-    whole = np.zeros((n, n))
-    for j in range(n):
-        for k in range(min(found.nodes.band + 1, n - j)):
-            whole[j + k, j] = whole[j, j + k] = band[j, k]
+    _, r, matrix = at(np.zeros(n))
+    whole = dense(matrix, eq)
     rng = np.random.default_rng(11)
     step = 1e-9
     for _ in range(8):

@@ -3,7 +3,22 @@
 import numpy as np
 import pytest
 
-from mpm.materials import FLOW, Constant, EllipseClipped, EllipseRadial, Hencky, NoFlow, flow, stress, tangent
+from mpm.config.materials import ELASTIC
+from mpm.materials import (
+    FLOW,
+    Constant,
+    EllipseClipped,
+    EllipseRadial,
+    Hencky,
+    NeoHookean,
+    NoFlow,
+    energy,
+    flow,
+    response,
+    stress,
+    tangent,
+    turning,
+)  # fmt: skip
 
 E = Hencky(3.0, 5.0)
 K = E.lam + 2 * E.mu / 3
@@ -66,3 +81,31 @@ def test_slopes_are_those_of_differences(law):
             np.testing.assert_allclose(a, slope, rtol=0, atol=4e-6 * np.abs(a).max())
         assert np.linalg.eigvalsh(a).min() > -1e-9
     assert kinks <= 2
+
+
+ELASTIC_LAWS = {"hencky": Hencky(3.0, 5.0), "neo_hookean": NeoHookean(3.0, 5.0)}
+
+
+@pytest.mark.parametrize(("kind", "law"), ELASTIC_LAWS.items(), ids=ELASTIC_LAWS)
+def test_every_elastic_law_answers_with_its_stress_and_slopes(kind, law):
+    """W is its energy, tau its stress, a and the turning of axes those of differences."""
+    assert set(ELASTIC_LAWS) == {one.kind for one in ELASTIC}
+
+    def answered(e):
+        trace, size, d = measures(e)
+        tau, a = np.empty(3), np.empty((3, 3))
+        W, share, good = response(law, NoFlow(), trace, tuple(d), size, 0.0, 300.0, 1.0, tau, a)
+        assert good and share == 1.0
+        return W, tau, a
+
+    for *e, _ in STATES:
+        e = np.array(e)
+        W, tau, a = answered(e)
+        assert pytest.approx(energy(law, *e), rel=1e-12, abs=1e-14) == W
+        np.testing.assert_allclose(tau, stress(law, *e, 0.0), rtol=0, atol=1e-13)
+        slope = np.stack([(answered(e + h)[1] - answered(e - h)[1]) / 2e-6 for h in 1e-6 * np.eye(3)], axis=1)
+        np.testing.assert_allclose(a, slope, rtol=0, atol=4e-6 * np.abs(a).max())
+        b = np.expm1(2 * e)
+        assert turning(law, 1.0, b[0], b[1]) == pytest.approx((tau[0] - tau[1]) / (b[0] - b[1]), rel=1e-9)
+    same = turning(law, 1.0, 0.2, 0.2)
+    assert same == pytest.approx(turning(law, 1.0, 0.2, 0.2 + 1e-7), rel=1e-6)
