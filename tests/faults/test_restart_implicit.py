@@ -29,3 +29,20 @@ def test_a_column_that_sags():
 def test_a_loaf():
     cuts, wrong = cut(mpm.load(LOAF, {"grid.cell": "4 mm", "time.end": 60}), 4, np.random.default_rng(5))
     assert cuts == 4 and not wrong
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_block_that_slides(dimension):
+    """With F-bar and friction, whose springs remember; in space by conjugate gradients."""
+    flat = dimension == 2
+    block = {
+        "grid": {"dimension": dimension, "size": [1, 0.5] if flat else [1, 0.5, 0.5], "cell": 0.125},
+        "bodies": {"block": {"shape": {"box": {"lower": [0.3, 0] if flat else [0.3, 0.1, 0], "upper": [0.55, 0.25] if flat else [0.55, 0.35, 0.25]}},
+                             "material": "stiff"}},
+        "materials": {"stiff": {"density": 1, "elastic": {"neo_hookean": {"E": 400, "nu": 0.45}}}},
+        "walls": {"bottom": {"contact": {"friction": 0.3}}}, "gravity": [0.5, -0.9] if flat else [0.5, 0, -0.9],
+        "method": {"mechanics": "implicit", "locking": {"fbar": {}}}, "time": {"end": 0.5}, "output": {"every": 0.125},
+    }  # fmt: skip
+    cuts, wrong = cut(mpm.load(block), 4, np.random.default_rng(5))
+    assert cuts == 4 and not wrong

@@ -104,8 +104,6 @@ def filled(dimension, **more):
 @pytest.mark.parametrize("mechanics", ["explicit", "implicit"])
 @pytest.mark.parametrize("dimension", [1, 2, "axisymmetric", 3])
 def test_in_every_dimension(dimension, mechanics):
-    if (dimension, mechanics) == (3, "implicit"):
-        pytest.skip("implicit mechanics is not known in dimension 3")
     run = run_point(mpm.load(filled(dimension, method={"mechanics": mechanics})))
     X = 1 - np.exp(-RATE * run.times)
     assert run.outcome.ok, run.outcome
