@@ -115,11 +115,13 @@ def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) ->
         active, places = active[order], places[order]
     number = np.full(n, -1)
     number[active] = np.arange(len(active))
-    held, double = np.zeros((len(active), D), bool), np.ones(len(active))
+    held, double, thin = np.zeros((len(active), D), bool), np.ones(len(active)), np.ones((len(active), D))
     for axis, side in np.argwhere(walls[:D] < CONTACT):
         on = places[:, axis] == (PAD if side == 0 else shape[axis] - 1 - PAD)
         held[on] |= True if walls[axis, side] == STICK else np.arange(D) == axis
         double[on] *= 2.0
+        if not (axis == 0 and isinstance(space, Axisymmetric)):  # where `radius` knows how thin it is; a line on a mirror stands for half a cell elsewhere
+            thin[np.ix_(on, np.arange(D) != axis)] *= 0.5
     eq = np.where(held, -1, np.cumsum(~held).reshape(held.shape) - 1).astype(np.int64)
     node = number[flat]
     radius = np.ones(len(active))
@@ -133,7 +135,7 @@ def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) ->
         row = row[(places[:, axis] + 3 < shape[axis]) & (row >= 0).all(axis=1)]
         row = row[fill[row].min(axis=1) < FILLED]
         lines.append(row)
-        stiff.append(GAMMA * mu * radius[row].mean(axis=1) * space.h ** (D - 2))
+        stiff.append(GAMMA * mu * radius[row].mean(axis=1) * thin[row, axis].min(axis=1) * space.h ** (D - 2))
     lines, stiff = np.concatenate(lines), np.concatenate(stiff)
     far = eq[lines].reshape(len(lines), 4 * D)
     spread = far.max(axis=1) - np.where(far < 0, eq.size, far).min(axis=1) if len(lines) else np.zeros(1, np.int64)

@@ -31,14 +31,14 @@ def test_a_slab_between_walls_is_plane_strain(locking):
     """The same numbers as in two directions, to what conjugate gradients leave."""
     plane, space = run_point(slab(2, locking=locking)), run_point(slab(3, locking=locking))
     assert plane.outcome.ok and space.outcome.ok
-    for two, three in (("position_mean_x", "position_mean_x"), ("position_mean_y", "position_mean_z"), ("position_max_y", "position_max_z")):
-        assert space.finals[three] == pytest.approx(plane.finals[two], rel=1e-6)
-    assert space.finals["dissipation_total"] == pytest.approx(0.004 * plane.finals["dissipation_total"], rel=1e-5)
+    for two, three in (("position_mean_x", "position_mean_x"), ("position_mean_y", "position_mean_z"), ("J_min", "J_min"), ("J_max", "J_max")):
+        assert space.finals[three] == pytest.approx(plane.finals[two], rel=1e-8)
+    assert space.finals["dissipation_total"] == pytest.approx(0.004 * plane.finals["dissipation_total"], rel=1e-7)
 
 
 @pytest.mark.slow
 def test_a_free_body_swells_without_stress():
-    """exp(gamma dTheta/(3 K)) in every direction, to round-off of the solver."""
+    """J = exp(3 alpha dTheta), everywhere."""
     run = run_point(
         mpm.load(
             {
@@ -52,8 +52,7 @@ def test_a_free_body_swells_without_stress():
         )
     )  # fmt: skip
     assert run.outcome.ok
-    assert run.finals["J_min"] == pytest.approx(math.exp(3 * math.log1p(0.04)), rel=1e-3) or run.finals["J_min"] == pytest.approx(math.exp(0.12), rel=1e-3)
-    assert run.finals["strain_max"] < 1.3 * 0.04
+    assert run.finals["J_min"] == pytest.approx(math.exp(0.12), rel=1e-3) and run.finals["J_max"] == pytest.approx(math.exp(0.12), rel=1e-3)
 
 
 @pytest.mark.slow
@@ -67,14 +66,13 @@ def test_a_cantilever_sags():
                 "bodies": {"beam": {"shape": {"box": {"lower": [0, 0.01, 0.02], "upper": [L, 0.04, 0.05]}}, "material": "rubber"}},
                 "materials": {"rubber": {"density": 1e3, "elastic": {"hencky": {"E": E, "nu": nu}}}},
                 "walls": {"left": "stick"}, "gravity": [0, 0, -g], "method": {"mechanics": "implicit"},
-                "time": {"end": 1e4, "step": 1e4}, "output": {"every": 1e4, "probes": {"tip": [L, 0.025, 0.035]}},
+                "time": {"end": 1e4, "step": 1e4}, "output": {"every": 1e4, "probes": {"tip": [L, 0.025, 0.035]}, "observables": ["displacement.tip_z"]},
             }
         )
     )  # fmt: skip
     w, area = 1e3 * g * H * H, H * H
     sag = w * L**4 / (8 * E * H**4 / 12) + w * L**2 / (2 * (5 / 6) * E / (2 * (1 + nu)) * area)
-    fallen = run.series["position_tip_z"]
-    assert run.outcome.ok and fallen[0] - fallen[-1] == pytest.approx(sag, rel=0.03)
+    assert run.outcome.ok and -run.finals["displacement_tip_z"] == pytest.approx(sag, rel=0.03)
 
 
 @pytest.mark.slow
