@@ -34,11 +34,10 @@ RIGID = {
 SHOWN = 20e-6  # s an output of rigid bodies
 COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
-
-
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 LOOKED = 50_000  # particles of a scene that are all made to see its limits
-IMPLICIT, IMPLICIT_STEPS, WORTH = 45e-6, 40, 50.0  # s a particle and implicit step, heat included; steps at tolerance 1e-4; see by_mechanics
+IMPLICIT = {1: 45e-6, 2: 45e-6, 3: 400e-6}  # s a particle and implicit step, heat included, by directions
+IMPLICIT_STEPS, WORTH = 40, 50.0  # steps at tolerance 1e-4; see by_mechanics
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 
@@ -79,7 +78,14 @@ def memory(experiment) -> int:
     fields = 3 * held_bytes(experiment, particles)  # as they are collected, joined and packed
     if not experiment.moving:
         return estimate_rigid(experiment)["memory_bytes"] + fields
-    return BYTES_PROCESS["moving"] + particles * bytes_particle(experiment) + nodes * bytes_node(experiment) + fields
+    body = particles * bytes_particle(experiment) + nodes * bytes_node(experiment) + bytes_implicit(experiment, particles, nodes)
+    return BYTES_PROCESS["moving"] + body + fields
+
+
+def bytes_implicit(experiment, particles: int, nodes: int) -> int:
+    """Weights, and in three directions blocks of nodes (mpm.implicit.matrix); a band is small beside them."""
+    D = experiment.grid.directions
+    return (particles * 3**D * (25 + 8 * D) + nodes * (131 * 80 if D == 3 else 0)) * (experiment.method.mechanics == "implicit")
 
 
 def held_bytes(experiment, particles: int) -> int:
@@ -122,6 +128,7 @@ def memory_at_most(experiment) -> int:
     if experiment.moving:
         count = math.prod(cells) * experiment.method.particles**grid.directions
         body = BYTES_PROCESS["moving"] + len(experiment.bodies) * count * bytes_particle(experiment) + math.prod(cells) * bytes_node(experiment)
+        body += bytes_implicit(experiment, count, math.prod(cells))
     else:
         count = math.prod(cells)
         body = BYTES_PROCESS["rigid"] + 8 * count * (3 * count // max(cells) + 5**grid.directions * 6)  # matrices, and a band of the smaller sides
@@ -235,7 +242,7 @@ def by_mechanics(experiment, found: dict) -> dict:
 
     end, step, tolerance = experiment.time.end, experiment.time.step, experiment.method.mechanics_tolerance
     steps = max(outputs(experiment) - 1, math.ceil(IMPLICIT_STEPS * (1e-4 / tolerance) ** 0.5)) if step == "auto" else math.ceil(end / step)
-    seconds = LEAST["moving"] + found["particles"] * steps * IMPLICIT + outputs(experiment) * ALONE["output"]
+    seconds = LEAST["moving"] + found["particles"] * steps * IMPLICIT[experiment.grid.directions] + outputs(experiment) * ALONE["output"]
     cost, why = f"explicit {found['seconds']:.2g} s in {found['steps']} steps, implicit {seconds:.2g} s in about {steps}", ""
     if experiment.method.mechanics == "auto":
         why = hindered(experiment) or ("" if found["seconds"] > WORTH * seconds else f"explicit steps cost less than {WORTH:g} times as much")
