@@ -1,4 +1,4 @@
-"""F-bar over knot spans, against volumetric locking in implicit steps (docs/physics.md 17.9; T. J. R. Hughes, Int. J. Numer. Meth. Engng. 15 (1980) 1413).
+"""F-bar over knot spans, against volumetric locking in implicit steps (docs/physics.md 17; T. J. R. Hughes, Int. J. Numer. Meth. Engng. 15 (1980) 1413).
 
     eps_bar = eps_tr + extra 1,   extra = (1 - own)(<ln det f> - ln det f)/3,   <a> = sum V0 a/sum V0 over the particles of a span
     Pi = sum V0 W(eps_bar)   so   tau_bar = tau + lift 1,   lift = (1 - own)(<tr tau> - tr tau)/3

@@ -43,7 +43,7 @@ def moduli_lanes_hencky(law, theta):
 
 @response.register(Hencky)
 def response_hencky(elastic, law, trace, d, size, thermal, theta, dt, tau, a):
-    """tau_i = 2 mu share d_i - p;  a as docs/physics.md 17.5."""
+    """tau_i = 2 mu share d_i - p;  a as docs/physics.md 17."""
     mu, K, unit = elastic.mu, elastic.lam + 2.0 * elastic.mu / 3.0, 1.0 / size if size > 0.0 else 0.0
     W, p, share, c11, c12, c22, _, good = tangent(law, elastic, trace, size, thermal, theta, dt)
     for i in range(3):
