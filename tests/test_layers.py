@@ -37,7 +37,7 @@ PEERS = {
     "study": {"plots"}, "opened": {"plots"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables", "mpm.text", "mpm.triangles", "mpm.warned"}  # anyone may import it
-GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
+GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sides", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
 COMPUTING = 3  # the last layer that may know only numbers
 
 

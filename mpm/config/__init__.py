@@ -33,6 +33,7 @@ Further files
     rules_point       rules for grid.dimension 0, the material point
     rules_scene       rules for bodies, materials, surfaces, walls and grid
     rules_setting     rules of what sets
+    rules_sides       rules for sides, by normals and of shapes
     rules_size        rules for sizes that no machine takes
     rules_sources     rules for sources
     rules_tools       rules for tools, and for observables of what bodies meet

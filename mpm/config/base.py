@@ -8,6 +8,7 @@ Menu    the kinds that one field allows. To add a kind, write its class and add 
 A kind whose fields all have defaults may be written as a bare string: `transfer: apic`, `walls: {bottom: stick}`.
 """
 
+import re
 from typing import Annotated, Any, ClassVar, Union, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -49,7 +50,10 @@ def problem(type_: str, message: str, allowed: Any = (), suggestion: str = "", a
 
 
 class Choice:
-    """Annotation of a Literal: exactly one of its words or numbers (`true` is not 1), or an error that lists them."""
+    """Annotation of a Literal: exactly one of its words or numbers (`true` is not 1), or an error that lists them. `pattern`: words like `example` too."""
+
+    def __init__(self, pattern: str = "", example: str = ""):
+        self.pattern, self.example = pattern, example
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         allowed = get_args(source)
@@ -59,9 +63,14 @@ class Choice:
                 for word in allowed:
                     if word == value:
                         return word
-            raise problem("choice", "none of the allowed values", list(allowed))
+                if self.pattern and re.fullmatch(self.pattern, str(value)):
+                    return value
+            raise problem("choice", "none of the allowed values", [*allowed, *([self.example] if self.pattern else [])])
 
-        return core_schema.no_info_plain_validator_function(validate, metadata={"pydantic_js_functions": [lambda schema, handler: {"enum": list(allowed)}]})
+        written: dict[str, Any] = {"enum": list(allowed)}
+        if self.pattern:
+            written = {"anyOf": [written, {"type": "string", "pattern": f"^{self.pattern}$", "examples": [self.example]}]}
+        return core_schema.no_info_plain_validator_function(validate, metadata={"pydantic_js_functions": [lambda schema, handler: written]})
 
 
 class Menu:

@@ -8,12 +8,13 @@ from pydantic import create_model, model_validator
 from mpm.config.base import Choice, Kind, Model, doc, one_of, problem
 from mpm.config.programmes import Beta, EmissivityProgramme, FluxProgramme, FrictionProgramme, Moment, Programme
 
-Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral", "inner", "outer"], Choice()]
+Side = Annotated[Literal["all", "left", "right", "bottom", "top", "front", "back", "lateral", "inner", "outer"], Choice(r"edge [1-9]\d*", "edge 3")]
 WALL_SIDES = {0: (), 1: ("left", "right"), 2: ("left", "right", "bottom", "top"), "axisymmetric": ("outer", "bottom", "top"),
               3: ("left", "right", "front", "back", "bottom", "top")}  # fmt: skip
 SURFACE_SIDES = {0: ("all",), 1: ("all", "left", "right"), 2: ("all", "left", "right", "bottom", "top"),
                  "axisymmetric": ("all", "lateral", "inner", "outer", "bottom", "top"),
                  3: ("all", "left", "right", "front", "back", "bottom", "top", "lateral")}  # fmt: skip
+RING_SIDES = ("inner", "outer")  # of a ring in the plane; those of axisymmetric bodies face the axis, or away from it
 EXCHANGES = ("convection", "flux", "fixed", "radiation")
 
 
@@ -84,7 +85,7 @@ class Surface(Spell):
     """Part of a body's surface, chosen by its outward normal at the start, and how it exchanges heat."""
 
     of: str = doc(description="a name under bodies")
-    side: Side = doc("all", description="which part, by the outward normal at the start")
+    side: Side = doc("all", description="which part, by the outward normal at the start; inner or outer of a ring; edge 3 of a polygon, from its third vertex")
     name: str | None = doc(None, description="names the surface in paths: surfaces.<name>.convection.beta", pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")
     convection: Convection | None = doc(None, description="convection to the surroundings")
     flux: Flux | None = doc(None, description="a given flux of heat")

@@ -30,7 +30,7 @@ class Load(Spell):
     """What acts on a body, or on a part of its surface chosen by its outward normal at the start."""
 
     of: str = doc(description="a name under bodies")
-    side: Side = doc("all", description="where the traction acts, by the outward normal at the start")
+    side: Side = doc("all", description="where the traction acts, by the outward normal at the start; inner or outer of a ring; edge 3 of a polygon")
     traction: Traction | None = doc(None, description="force by reference area")
     drag: Drag | None = doc(None, description="force against the motion of the whole body")
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from mpm.config.boundary import SURFACE_SIDES
 from mpm.config.explain import Finding
 from mpm.config.partial import MISSING
 from mpm.config.problems import near
 from mpm.config.rules_scene import vector
+from mpm.config.rules_sides import known_side
 
 
 def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
@@ -23,9 +23,7 @@ def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         yield Finding(("loads", index), f"{name!r} has no elastic law, so the body cannot move", f"an elastic section in materials.{name}", on_key=True)
     elif item.traction is not None:
         yield from vector(experiment, ("loads", index, "traction", "nominal"), item.traction.nominal, "the traction")
-        if item.side not in SURFACE_SIDES[dimension]:
-            sides = SURFACE_SIDES[dimension]
-            yield Finding(("loads", index, "side"), f"there is no such side in dimension {dimension}", list(sides), near(item.side, sides), given=item.side)
+        yield from known_side(experiment, ("loads", index, "side"), item)
 
 
 def gravity(experiment: Any) -> Iterator[Finding]:

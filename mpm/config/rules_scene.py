@@ -8,6 +8,7 @@ from mpm.config.boundary import EXCHANGES, SURFACE_SIDES, WALL_SIDES, spell
 from mpm.config.explain import Finding
 from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import near
+from mpm.config.rules_sides import is_of_shape, known_side
 from mpm.config.schema_paths import Path
 from mpm.config.shapes_fit import misfits, outside
 
@@ -167,17 +168,21 @@ def surface_conducts(experiment: Any, index: int, item: Any) -> Iterator[Finding
 
 def surface_side(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     """There is such a side in the dimension."""
-    sides = SURFACE_SIDES[experiment.grid.dimension]
-    if item.side not in sides:
-        yield Finding(
-            ("surfaces", index, "side"), f"there is no such side in dimension {experiment.grid.dimension}", list(sides), near(item.side, sides), given=item.side
-        )
+    yield from known_side(experiment, ("surfaces", index, "side"), item)
 
 
 def covered(side: str, dimension: Any) -> set[str]:
     """The sides that a side's name stands for."""
     every = ({*SURFACE_SIDES[dimension]} - {"all"} - ({"lateral"} if dimension in (3, "axisymmetric") else set())) or {"all"}
     return every if side == "all" else every - {"bottom", "top"} if side == "lateral" else {side}
+
+
+def shared(one: str, other: str, dimension: Any) -> list[str]:
+    """Sides that are in both. A side of the shape itself may lie on any of those that are told by normals."""
+    of_shape = [side for side in (one, other) if is_of_shape(side, dimension)]
+    if of_shape:
+        return of_shape[:1] if one == other or len(of_shape) == 1 else []
+    return sorted(covered(one, dimension) & covered(other, dimension))
 
 
 def surface_twice(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
@@ -190,7 +195,7 @@ def surface_twice(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
             if other is MISSING or other.of != item.of or getattr(item, kind) is None:
                 continue
             same = [name for name in alike if getattr(other, name) is not None and (before < index or name != kind)]
-            both = sorted(covered(item.side, dimension) & covered(other.side, dimension))
+            both = shared(item.side, other.side, dimension)
             (begin, end), (start, stop) = spell(item), spell(other)
             if same and both and max(begin, start) < min(end, stop):
                 said = f"{item.of!r} has a {same[0]} there already, from surfaces.{before} (side {other.side})"

@@ -99,7 +99,7 @@ def sides() -> list[Entry]:
         of_walls = [str(dimension) for dimension, some in WALL_SIDES.items() if name in some]
         facts = {"surfaces": f"dimension {', '.join(of_bodies)}" if of_bodies else "", "walls": f"dimension {', '.join(of_walls)}" if of_walls else ""}
         made.append(Entry(name, "side", SIDES[name], facts))
-    return made
+    return [*made, Entry("edge 3", "side", SIDES["edge 3"], {"surfaces": "dimension 2, axisymmetric: of a polygon", "walls": ""})]
 
 
 SIDES = {
@@ -111,8 +111,9 @@ SIDES = {
     "front": "lowest y in three dimensions",
     "back": "highest y in three dimensions",
     "lateral": "round about the axis: all of the surface but bottom and top",
-    "inner": "of a body: what faces the axis, along r",
-    "outer": "of the domain: largest r; of a body: what faces away from the axis, along r",
+    "inner": "of a body: what faces the axis, along r; in the plane, the hole of a ring",
+    "outer": "of the domain: largest r; of a body: what faces away from the axis, along r; in the plane, the rim of a ring",
+    "edge 3": "of a polygon: from its third vertex to the next",
 }
 KINDS = tuple(warned.KINDS.items())
 FIELDS = {"grid": variables.FIELDS_GRID, "particles": variables.FIELDS_PARTICLES}

@@ -51,7 +51,7 @@ def row_sums(stencil: np.ndarray, diff: np.ndarray) -> np.ndarray:
 def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sides: tuple[str, ...], others: tuple = ()) -> Geometry:
     """Matrices of `shape` on the grid of cell `h` whose node 0 lies at `origin`, one exchange matrix for each of `sides`.
 
-    shape   hashable, with bounds(), cut(edges, order) and faces(normal (S, d), side) -> (S,) bool: mpm.scene.shapes
+    shape   hashable, with bounds(), cut(edges, order) and faces(surface, side, plane) -> (S,) bool: mpm.scene.shapes
     others  shapes that touch it: where they lie on it nothing is exchanged with the surroundings
     """
     lower, upper = (np.array(b, dtype=float) for b in shape.bounds())
@@ -62,18 +62,18 @@ def geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...], sid
     edges = on_axis(edges, axisymmetric)
     counts = np.array([len(e) - 1 for e in edges], dtype=np.int64)
     volume, surface = shape.cut(edges, ORDER)
-    x, sw, normal, cell = surface.x, surface.w, surface.normal, surface.cell
+    beside = surface
     if others:
-        x, sw, normal, cell = surface_beside(shape, others, edges, ORDER, h)
-        bare = ~covered(x, normal, others, h)
-        x, sw, normal, cell = x[bare], sw[bare], normal[bare], cell[bare]
+        beside = surface_beside(shape, others, edges, ORDER, h)
+        beside = beside.at(~covered(beside.x, beside.normal, others, h))
+    x, cell = beside.x, beside.cell
     w = volume.w * volume.x[:, 0] if axisymmetric else volume.w
-    sw = sw * x[:, 0] if axisymmetric else sw
+    sw = beside.w * x[:, 0] if axisymmetric else beside.w
     mass, stiffness = np.zeros((2, len(nodes.diff), nodes.size))
     assemble(nodes, d, volume.x, w, volume.cell, counts, True, mass, stiffness)
     exchange, faces = [], []
     for side in sides:
-        part = shape.faces(normal, side)
+        part = shape.faces(beside, side, not axisymmetric)
         stencil = np.zeros_like(mass)
         assemble(nodes, d, x[part], sw[part], cell[part], counts, False, stencil, stencil)
         exchange.append(stencil)

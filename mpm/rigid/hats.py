@@ -72,19 +72,19 @@ def hat_geometry(shape, axisymmetric: bool, h: float, origin: tuple[float, ...],
     nodes, edges = hat_nodes(lower, upper, h, np.asarray(origin, dtype=float))
     edges = on_axis(edges, axisymmetric)
     volume, surface = shape.cut(edges, ORDER)
-    sx, sw, normal = surface.x, surface.w, surface.normal
+    beside = surface
     if others:
-        sx, sw, normal, _ = surface_beside(shape, others, edges, ORDER, h)
-        bare = ~covered(sx, normal, others, h)
-        sx, sw, normal = sx[bare], sw[bare], normal[bare]
+        beside = surface_beside(shape, others, edges, ORDER, h)
+        beside = beside.at(~covered(beside.x, beside.normal, others, h))
+    sx, normal = beside.x, beside.normal
     w = volume.w * volume.x[:, 0] if axisymmetric else volume.w
-    sw = sw * sx[:, 0] if axisymmetric else sw
+    sw = beside.w * sx[:, 0] if axisymmetric else beside.w
     index, value = evaluated(nodes, volume.x)
     lumped = np.bincount(index.ravel(), weights=(w[:, None] * value).ravel(), minlength=nodes.size)
     stiffness = conductances(nodes, d, index, volume.x, w)
     place, exchange, areas, faces, depths = places(nodes, d), [], [], [], []
     for side in sides:
-        part = shape.faces(normal, side)
+        part = shape.faces(beside, side, not axisymmetric)
         index, value = evaluated(nodes, sx[part])
         share = (sw[part][:, None] * value).ravel()
         far = np.einsum("sad,sd->sa", sx[part][:, None] - place[index], normal[part]).ravel()

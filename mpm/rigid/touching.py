@@ -5,6 +5,8 @@ A point x of a surface with the outward normal n lies on another body where that
 A cut by the grid is also cut by the other body's box, so that what it covers ends at an end of a piece: exact where its ends are those of its box.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 TOUCH, FACING, STEP = 0.05, 0.7, 1e-3  # of a cell; cosine; of a cell, for the slope of the distance
@@ -33,14 +35,14 @@ def split(edges, others, h: float) -> list[np.ndarray]:
 
 
 def surface_beside(shape, others, edges, order: int, h: float):
-    """Points, weights, normals and cells (of `edges`, rising) of the surface of `shape`, cut by the boxes of `others` too."""
+    """The surface of `shape` (mpm.scene.cut.Surface), its cells those of `edges`, rising, cut by the boxes of `others` too."""
     finer = split(edges, others, h)
     _, surface = shape.cut(finer, order)
     index = np.unravel_index(surface.cell, [len(lines) - 1 for lines in finer])
     home = [np.searchsorted(lines, 0.5 * (fine[i] + fine[i + 1]), side="right") - 1 for lines, fine, i in zip(edges, finer, index, strict=True)]
     cell = np.ravel_multi_index(home, [len(lines) - 1 for lines in edges])
     rank = np.argsort(cell, kind="stable")
-    return surface.x[rank], surface.w[rank], surface.normal[rank], cell[rank]
+    return replace(surface.at(rank), cell=cell[rank])
 
 
 def touch(one, two, h: float) -> bool:
@@ -59,6 +61,6 @@ def lines_of(shape, h: float, k: int) -> np.ndarray:
 
 def patch(one, two, edges, order: int, h: float):
     """Points (S, d), weights and outward normals of that part of the surface of `one` that lies on `two`."""
-    x, w, normal, _ = surface_beside(one, (two,), edges, order, h)
-    here = covered(x, normal, (two,), h)
-    return x[here], w[here], normal[here]
+    surface = surface_beside(one, (two,), edges, order, h)
+    here = surface.at(covered(surface.x, surface.normal, (two,), h))
+    return here.x, here.w, here.normal

@@ -25,6 +25,7 @@ Further files
     rigid              A rigid scene from a validated experiment, and its Run
     scales             the scales of a scene's bodies, from the config alone
     scaling            slow scenes on a fast clock
+    sides              sides of a surface by its outward normals
     sources            sources of a config
     sphere             exact quadrature of a ball cut by a three-dimensional grid
     still              bodies that do not move
@@ -36,6 +37,7 @@ Further files
 
 from mpm.scene.contents import CutCells
 from mpm.scene.cut import Quadrature, Surface
-from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, Ring, cells, cut_quadrature, on_side, shape
+from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, Ring, cells, cut_quadrature, shape
+from mpm.scene.sides import on_side
 
 __all__ = ["Ball", "Box", "CutCells", "Cylinder", "Polygon", "Quadrature", "Ring", "Surface", "cells", "cut_quadrature", "on_side", "shape"]

@@ -64,6 +64,10 @@ class Surface:
     cell: np.ndarray
     side: np.ndarray
 
+    def at(self, some: np.ndarray) -> "Surface":
+        """Some of the points, by numbers or by a mask."""
+        return Surface(self.x[some], self.w[some], self.normal[some], self.cell[some], self.side[some])
+
 
 class Batch(NamedTuple):
     """Points of volume: x (A, q, d), w (A, q), all of a row in one cell (A,)."""

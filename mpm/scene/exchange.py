@@ -10,7 +10,7 @@ from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
 from mpm.scene.menus import acting, known
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import on_side
+from mpm.scene.shapes import shape
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
 
 
@@ -91,7 +91,9 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
     NoExchange, None where nothing acts and nothing is met.
     """
     faces = (cut.area == 0.0) | (cut.area > 1e-6 * cut.area.max(initial=0.0))  # corners, by which bodies meet, are no face; shut seams are
-    acts = [act for entry in experiment.surfaces if entry.of == name for act in acts_of(entry, np.flatnonzero(on_side(cut.normal, entry.side) & faces))]
+    outline, plane = shape(experiment.bodies[name].shape, experiment.grid.dimension), experiment.grid.dimension == 2
+    entries = [entry for entry in experiment.surfaces if entry.of == name]
+    acts = [act for entry in entries for act in acts_of(entry, np.flatnonzero(outline.faces(cut, entry.side, plane) & faces))]
     acts = [act for act in acts if len(act.pieces)]
     walls = hot_walls(experiment, sides)
     if not acts and not walls:

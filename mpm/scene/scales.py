@@ -144,13 +144,13 @@ def temperatures(experiment, name: str) -> list[tuple[float, float]]:
 
 
 def measured(outline, axisymmetric: bool):
-    """Points and volumes of the inside; points, areas and normals of the surface. Axisymmetric bodies are measured all round."""
+    """Volumes of points of the inside; points of the surface (mpm.scene.cut.Surface) and their areas. Axisymmetric bodies are measured all round."""
     lower, upper = outline.bounds()
     if axisymmetric:
         lower = np.maximum(lower, [0.0, -np.inf])
     inside, rim = cut_quadrature(outline, [np.linspace(a, b, LATTICE + 1) for a, b in zip(lower, upper, strict=True)], 2)
     around = (2 * np.pi * inside.x[:, 0], 2 * np.pi * rim.x[:, 0]) if axisymmetric else (1.0, 1.0)
-    return inside.x, inside.w * around[0], rim.x, rim.w * around[1], rim.normal
+    return inside.w * around[0], rim, rim.w * around[1]
 
 
 def lattice(outline) -> np.ndarray:
@@ -212,15 +212,15 @@ def shaped(experiment, name: str, high: float):
     """Volume, surface, extent, reach and exchanges of a body with a shape."""
     axisymmetric = experiment.grid.dimension == "axisymmetric"
     outline = shape(experiment.bodies[name].shape, experiment.grid.dimension)
-    _, w, rim, area, normal = measured(outline, axisymmetric)
+    w, rim, area = measured(outline, axisymmetric)
     lower, upper = outline.bounds()
-    exchanges, seen = [], np.zeros(len(rim), dtype=bool)
+    exchanges, seen = [], np.zeros(len(area), dtype=bool)
     for entry in experiment.surfaces:
         if entry.of == name:
-            here = outline.faces(normal, entry.side)
+            here = outline.faces(rim, entry.side, experiment.grid.dimension == 2)
             exchanges += exchanging(entry, float(area[here].sum()), high)
             seen |= here | (area <= 0)  # the axis is no surface
-    return float(w.sum()), float(area.sum()), tuple(float(e) for e in upper - lower), depth(outline, rim, seen) if exchanges else 0.0, tuple(exchanges)
+    return float(w.sum()), float(area.sum()), tuple(float(e) for e in upper - lower), depth(outline, rim.x, seen) if exchanges else 0.0, tuple(exchanges)
 
 
 def depth(outline, rim: np.ndarray, seen: np.ndarray) -> float:

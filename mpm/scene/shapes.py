@@ -17,6 +17,7 @@ from mpm.scene import cut as cutting
 from mpm.scene.contents import CutCells, particles, stacked, weigh
 from mpm.scene.cut import Segment
 from mpm.scene.cut_boundary import plane
+from mpm.scene.sides import on_side
 from mpm.scene.sphere import ball, circle
 
 Point = tuple[float, ...]
@@ -36,8 +37,17 @@ class Shape:
     def inside(self, x: np.ndarray) -> np.ndarray:
         return self.distance(x) < 0
 
-    def faces(self, normal: np.ndarray, side: str) -> np.ndarray:
-        return on_side(normal, side)
+    def faces(self, surface, side: str, plane: bool = False) -> np.ndarray:
+        """Which pieces of the shape's surface lie on a side: by `normal` (N, d), or by the number `side` (N,) of the smooth side that a piece lies on.
+
+        In the plane inner and outer are those of a ring; else they face the axis, or away from it.
+        """
+        number = self.smooth_side(side, plane)
+        return on_side(surface.normal, side) if number is None else surface.side == number
+
+    def smooth_side(self, side: str, plane: bool) -> int | None:
+        """The number of the smooth side that is called so; None for a side that is told by normals."""
+        return None
 
     def pieces(self):
         """Boundary of a plane shape, the inside on the left."""
@@ -190,6 +200,9 @@ class Ring(Shape):
     def moved(self, shift):
         return replace(self, centre=_point(np.add(self.centre, shift)))
 
+    def smooth_side(self, side, plane):
+        return {"outer": 0, "inner": 1}.get(side) if plane else None
+
     def pieces(self):
         return [*circle(self.centre, self.outer), *(replace(a, outward=-1, side=1) for a in circle(self.centre, self.inner))]
 
@@ -222,10 +235,20 @@ class Polygon(Shape):
 
     def pieces(self):
         a = np.array(self.vertices)
-        b = np.roll(a, -1, axis=0)
-        turning = np.sum(a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1])
-        points = a if turning > 0 else a[::-1]
+        points = a if self.turning() > 0 else a[::-1]
         return [Segment(tuple(p), tuple(q), k) for k, (p, q) in enumerate(zip(points, np.roll(points, -1, axis=0), strict=True))]
+
+    def smooth_side(self, side, plane):
+        if not side.startswith("edge "):
+            return None
+        edge, count = int(side.removeprefix("edge ")) - 1, len(self.vertices)
+        return edge if self.turning() > 0 else (count - 2 - edge) % count  # `pieces` goes round the other way
+
+    def turning(self) -> float:
+        """Twice the area: above 0 where the vertices go round with the inside on the left."""
+        a = np.array(self.vertices)
+        b = np.roll(a, -1, axis=0)
+        return float(np.sum(a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]))
 
 
 KINDS = {"box": Box, "ball": Ball, "cylinder": Cylinder, "ring": Ring, "polygon": Polygon}
@@ -263,22 +286,3 @@ def cells(body: Shape, edges, radial: bool = False) -> CutCells:
     """One particle a cut cell, and its pieces of surface. `radial`: weighted with r, per radian."""
     edges = [np.asarray(e, dtype=float) for e in edges]
     return particles(body.contents(edges, radial), edges)
-
-
-SIDES = {1: ("left", "right"), 2: ("left", "right", "bottom", "top"), 3: ("left", "right", "front", "back", "bottom", "top")}
-
-
-def on_side(normal: np.ndarray, side: str) -> np.ndarray:
-    """Which outward normals (N, d) face `side`: all, a direction (its component is the largest), or lateral (any that is not bottom or top).
-
-    Inner and outer are those that face the axis and those that face away from it, along r.
-    """
-    d = normal.shape[1]
-    if side == "all":
-        return np.ones(len(normal), dtype=bool)
-    facing = np.argmax(np.abs(normal) - 1e-12 * np.arange(d), axis=1)
-    if side == "lateral":
-        return (facing != d - 1) if d > 1 else np.ones(len(normal), dtype=bool)
-    number = SIDES[d].index({"inner": "left", "outer": "right"}.get(side, side))
-    axis = number // 2
-    return (facing == axis) & ((normal[np.arange(len(normal)), facing] > 0) == bool(number % 2))

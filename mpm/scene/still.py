@@ -7,7 +7,7 @@ import numpy as np
 
 from mpm.config.boundary import spell
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import on_side, shape
+from mpm.scene.shapes import shape
 
 
 def joints(experiment) -> tuple:
@@ -67,8 +67,8 @@ def refuse_covered(experiment, outlines, found) -> None:
         if not others or not entries:
             continue
         lines = [lines_of(outlines[b], h, k) for k in range(outlines[b].dimension)]
-        x, _, normal, _ = surface_beside(outlines[b], others, lines, 2, h)
-        bare = ~covered(x, normal, others, h)
+        surface = surface_beside(outlines[b], others, lines, 2, h)
+        bare = ~covered(surface.x, surface.normal, others, h)
         for index, entry in entries:
-            if not np.any(bare & on_side(normal, entry.side)):
+            if not np.any(bare & outlines[b].faces(surface, entry.side, experiment.grid.dimension == 2)):
                 raise SceneError(("surfaces", index), f"other bodies cover side {entry.side!r} of {name}, and nothing is exchanged there: leave the entry out")

@@ -15,7 +15,7 @@ from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import pulling, wall_kind
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import on_side, shape
+from mpm.scene.shapes import shape
 from mpm.scene.sources import sourced
 from mpm.scene.traction import one_course
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
@@ -73,7 +73,7 @@ def total_body(experiment, name: str, zero: float, space):
         theta = np.full(len(x), config.temperature - zero, dtype)
         thermal = Thermal(theta, np.zeros((len(x), D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
         pieces = SimpleNamespace(owner=np.zeros(len(surface.w), np.int64), volume=V, centroid=np.zeros((1, D)), area=surface.w, normal=surface.normal,
-                                 point=surface.x)  # fmt: skip
+                                 side=surface.side, point=surface.x)  # fmt: skip
         skin, around, _ = exchanging_surface(experiment, name, pieces, zero, SIDES[grid.dimension], thermal)
     if isinstance(skin, Surface):
         skin = skin._replace(row=np.full(len(x), -1, np.int32))  # points of the surface belong to no particle here
@@ -192,9 +192,9 @@ def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> 
     course = one_course(experiment, name)
     if not tractions:
         return np.zeros((0, D)), course, drag
-    x, force = [], []
+    x, force, outline = [], [], shape(experiment.bodies[name].shape, experiment.grid.dimension)
     for entry in tractions:
-        pieces = on_side(surface.normal, entry.side)
+        pieces = outline.faces(surface, entry.side, experiment.grid.dimension == 2)
         if not pieces.any():
             raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
         x.append(surface.x[pieces])

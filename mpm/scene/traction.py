@@ -18,7 +18,7 @@ from mpm.basis import inverse_moment
 from mpm.config.boundary import spell
 from mpm.scene.menus import pulling
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import on_side
+from mpm.scene.shapes import shape
 from mpm.sources import Both
 from mpm.state import Axisymmetric, Load, NoSource, Ramp, Within
 from mpm.transfer import uses_basis_gradient
@@ -114,8 +114,9 @@ def one_load(experiment, name: str, cut, how, entries, course, courses) -> Load:
     rate = pulling([entry for entry in entries if first and spell(entry) == course[1:]])[1]
     N, D = cut.centroid.shape
     force, dipole, radial = np.zeros((N, D)), np.zeros((N, D, D)), isinstance(space, Axisymmetric)
+    outline = shape(experiment.bodies[name].shape, experiment.grid.dimension)
     for entry in tractions:
-        pieces = np.flatnonzero(on_side(cut.normal, entry.side))
+        pieces = np.flatnonzero(outline.faces(cut, entry.side, experiment.grid.dimension == 2))
         if len(pieces) == 0:
             raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
         one, moment = pushed(cut, pieces, np.array(entry.traction.nominal), space.h, radial)

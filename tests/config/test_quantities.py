@@ -31,7 +31,7 @@ def test_infinity_only_where_it_means_something():
     assert quantities.LENGTH.infinite is False
     beta = get_args(quantities.Exchange)[1]
     assert beta.validate(math.inf) == beta.validate(".inf") == beta.validate("inf") == math.inf
-    assert [name for name, quantity in MENU.items() if quantity.infinite] == ["Exchange", "Friction"]
+    assert [name for name, quantity in MENU.items() if quantity.infinite] == ["Exchange"]
 
 
 def test_offset_units():

@@ -98,7 +98,7 @@ def test_units_and_kinds_are_described():
     made = schema()
     assert made["$defs"]["Grid"]["properties"]["cell"]["description"] == "edge of a cell [m]"
     kinds = made["$defs"]["Body"]["properties"]["shape"]["oneOf"]
-    assert [next(iter(kind["properties"])) for kind in kinds if "properties" in kind] == ["box", "ball", "cylinder", "ring", "polygon", "point"]
+    assert [next(iter(kind["properties"])) for kind in kinds if "properties" in kind] == ["box", "ball", "cylinder", "ring", "polygon", "mesh", "point"]
     assert made["$defs"]["Convection"]["properties"]["beta"]["description"].endswith("[W/m**2/K]")
 
 

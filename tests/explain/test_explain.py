@@ -26,7 +26,7 @@ def test_the_tables_of_the_program_are_whole():
     assert {one.word for one in results.outcomes()} == {kind for kind, _, _ in outcome.KINDS.values()} | {variables.MEMORY}
     assert [one.word for one in results.warnings()] == list(warned.KINDS)
     assert [one.word for one in results.statuses()] == list(variables.STATUS) and set(results.STATUSES) == set(variables.STATUS)
-    assert {one.word for one in results.sides()} == {side for table in (SURFACE_SIDES, WALL_SIDES) for some in table.values() for side in some}
+    assert {one.word for one in results.sides()} == {side for table in (SURFACE_SIDES, WALL_SIDES) for some in table.values() for side in some} | {"edge 3"}
     assert {one.word for one in results.observables()} >= set(variables.VARIABLES)
 
 
