@@ -1,5 +1,6 @@
 """Triangle meshes of a config: read from a file beside it when the config is, so that a point carries its triangles and no path."""
 
+import io
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,7 @@ from mpm.config.shapes_fit import outside
 from mpm.triangles import packed, put
 
 KINDS = (".stl", ".obj", ".ply", ".off")
-MOST = 50_000  # triangles
+MOST_TRIANGLES = 50_000  # triangles
 RAYS = 41  # a direction, along which a mesh is looked through
 WATERTIGHT = "a closed mesh: every edge between two triangles, with one side out"
 
@@ -36,13 +37,11 @@ def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if path.suffix.lower() not in KINDS:
         raise Unfit(f"{path.name} is no file of triangles that is known", ", ".join(KINDS))
     content = path.read_bytes()
-    import io
-
     import trimesh  # reads STL, OBJ and others, and joins the corners that triangles share
 
     try:
-        mesh = trimesh.load(io.BytesIO(content), file_type=path.suffix.lower()[1:], force="mesh", process=True, skip_materials=True)
-        vertices, faces = np.array(mesh.vertices, float), np.array(mesh.faces, np.int64)
+        mesh: Any = trimesh.load(io.BytesIO(content), file_type=path.suffix.lower()[1:], force="mesh", process=True, skip_materials=True)
+        vertices, faces = np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, np.int64)
     except Exception as error:  # whatever a reader says of a broken file
         raise Unfit(f"{path.name} cannot be read: {brief(str(error))}", f"a whole file of kind {', '.join(KINDS)}") from None
     return checked(vertices, faces, path.name)
@@ -52,8 +51,8 @@ def checked(vertices: np.ndarray, faces: np.ndarray, name: str) -> tuple[np.ndar
     """A closed mesh that does not cross itself, its triangles counter-clockwise from outside; Unfit."""
     if not len(faces) or not np.isfinite(vertices).all():
         raise Unfit(f"{name} holds no triangles")
-    if len(faces) > MOST:
-        raise Unfit(f"{name} has {len(faces)} triangles", f"at most {MOST}: a coarser mesh")
+    if len(faces) > MOST_TRIANGLES:
+        raise Unfit(f"{name} has {len(faces)} triangles", f"at most {MOST_TRIANGLES}: a coarser mesh")
     corner = vertices[faces]
     size = float((vertices.max(axis=0) - vertices.min(axis=0)).max())
     flat = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1) <= (1e-9 * size) ** 2

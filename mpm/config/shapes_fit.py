@@ -76,7 +76,8 @@ def holds(shape: Any, point: tuple[float, ...], slack: float) -> bool:
     if isinstance(shape, MaterialPoint) or (isinstance(shape, Mesh) and not shape.data):
         return True
     if isinstance(shape, Mesh):
-        return encloses(*corners(shape), point, slack)
+        vertices, faces = corners(shape)
+        return encloses(vertices, faces, point, slack)
     if isinstance(shape, Ball):
         return math.dist(point, shape.centre) <= shape.radius + slack
     if isinstance(shape, Ring):

@@ -15,7 +15,7 @@ from scipy.linalg.lapack import dpbtrf, dpbtrs
 from mpm.boundary import directions
 from mpm.jit import kernel, role
 
-RESIDUAL, MOST = 1e-7, 5000  # of the residual in the norm of the inverse blocks; products
+RESIDUAL, MOST_PRODUCTS = 1e-7, 5000  # of the residual in the norm of the inverse blocks; products
 FAR, WIDE = 3, 7  # nodes aside: what particles and ghosts reach; 2 FAR + 1
 
 
@@ -151,7 +151,7 @@ def conjugate(blocks, right, inverse, x):
     first = weigh(inverse, r, z)
     rho, aim = first, RESIDUAL * RESIDUAL * first
     p[:] = z
-    for count in range(MOST):
+    for count in range(MOST_PRODUCTS):
         if rho <= aim:
             return count
         product(blocks, p, q)

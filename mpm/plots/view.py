@@ -65,8 +65,8 @@ class View:
         rows = [axis for axis in self.parameters if axis.dim == self.design]
         if len(rows) == 1:
             return rows[0]
-        texts = [", ".join(each) for each in zip(*(axis.values for axis in rows), strict=True)] or [str(i) for i in range(self.sizes[self.design])]
         name = str(self.design)
+        texts = [", ".join(each) for each in zip(*(axis.values for axis in rows), strict=True)] or [str(i) for i in range(self.sizes[name])]
         return Axis(name, name, np.array(texts, dtype=object), words.title_case(name), name, "", False, True, np.arange(len(texts), dtype=float))
 
     @cached_property

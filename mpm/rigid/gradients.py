@@ -4,7 +4,7 @@ Conjugate gradients, preconditioned by an incomplete Cholesky factor on the sten
 is below `tolerance` of that of b; then the body's mean is set so that 1.S x = 1.b to round-off: the heat ledger does not see the tolerance.
 Iterations to 1e-7, sphere of 8 cells a radius, gamma dt = 0.01: Bi 10: 81 by the diagonal, 39 by a symmetric Gauss-Seidel sweep, 5 by this one;
 beta = inf (a penalty of 1e5 kappa/h): 1411, 908, 176: there the factor needs a shift of its diagonal, doubled from SHIFT until all pivots are positive.
-Good values  tolerance 1e-4 of the step's.   Fails when: MOST iterations do not do (the step is rejected, and a shorter one tried).
+Good values  tolerance 1e-4 of the step's.   Fails when: MOST_ITERATIONS iterations do not do (the step is rejected, and a shorter one tried).
 """
 
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from mpm.jit import kernel, role
 from mpm.rigid.band import back_substitute, factorise, fill, make_band
 from mpm.rigid.nodes import apply
 
-MOST, SHIFT = 1000, 1e-3
+MOST_ITERATIONS, SHIFT = 1000, 1e-3
 
 
 class Factor(NamedTuple):
@@ -156,7 +156,7 @@ def invert_gradients(solver, x, guess):
     for i in range(n):
         r[i] = b[i] - q[i]
     before, done = 1.0, False
-    for _ in range(MOST):
+    for _ in range(MOST_ITERATIONS):
         size = 0.0
         for i in range(n):
             size += r[i] * r[i] / S[0, i]
