@@ -45,3 +45,19 @@ def test_cooks_membrane_does_not_lock():
     tips = [error("cooks_membrane.yaml", "error_tip", cell, **{"method.locking": {"fbar": {}}, "time.step": "2.5e4"}) for cell in (4, 2, 1)]
     assert tips[0] < 0.04 and tips[1] < 0.015 and tips[2] < 0.008, tips
     assert error("cooks_membrane.yaml", "error_tip", 4, **{"method.locking": None, "time.step": "2.5e4"}) > 0.1
+
+
+@pytest.mark.slow
+def test_a_disc_of_dough_spreads_as_far_in_any_cell():
+    """nu = 0.499, p0 = 1000: mean radius after 5 s 12.12, 12.38, 12.46, 12.48 mm at cells of 4, 2, 1, 0.5 mm; without F-bar 11.36, 11.42, 11.74, 12.20."""
+
+    def radius(cell, locking):
+        changes = {"grid.cell": f"{cell} mm", "time.end": "5", "output.every": "5", "materials.batter.elastic.hencky.nu": "0.499",
+                   "materials.batter.flow.ellipse.p0": "1e3", "method.locking": locking}  # fmt: skip
+        run = run_point(mpm.load(CONFIGS / "studies" / "viscous_slump.yaml", changes))
+        assert run.outcome.ok and run.facts["failed"] == 0
+        return run.finals["position_mean_r"]
+
+    fine = radius(0.5, {"fbar": {}})
+    assert [radius(cell, {"fbar": {}}) for cell in (2, 1)] == pytest.approx([fine, fine], rel=1e-2)
+    assert radius(2, None) < 0.93 * fine
