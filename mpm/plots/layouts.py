@@ -10,6 +10,8 @@ from mpm.plots.sample import FEWEST, chief, scatter
 from mpm.plots.style import INK, QUIET, figure, styled
 from mpm.plots.view import Axis, View, spread
 
+THIRD = 45  # letters of a legend under a panel of three in a row
+
 
 def overview(view: View) -> Any:
     """The figure that answers the question of the dataset, by what is in it."""
@@ -116,12 +118,13 @@ def swept(view: View) -> Any:
 
 
 def series_of(view: View) -> list[str]:
-    """The series that the overview shows: the first family that it is asked for, else probes' temperatures, else the first family."""
+    """The series that the overview shows: what it is asked for, else probes' temperatures, else errors, else the first family."""
     there = view.series_names()
     if asked := [name for name in view.asked if view.series is not None and name in view.series and "time" in view.series[name].dims]:
         return [name for name in asked if view.kin(name) == view.kin(asked[0])][:4]
+    errors = [name for name in ("error_l2", "error_max") if name in there]
     probes = [name for name in view.probes if name in there]
-    return probes[:4] or (view.families()[0][:4] if there else [])
+    return probes[:4] or errors or (view.families()[0][:4] if there else [])
 
 
 def share(axes: Any) -> None:
@@ -144,7 +147,8 @@ def families(view: View, lines: Axis | None) -> Any:
     groups = view.families()[:6]
     if not groups:
         return numbers(view)
-    columns = 1 if len(groups) == 1 else 2 if len(groups) in (2, 4) else 3
+    long = any(len(label) > THIRD for names in groups if len(names) > 1 for label in series.labels(view, names[:5]))
+    columns = 1 if len(groups) == 1 else 2 if len(groups) in (2, 4) or long else 3
     rows = math.ceil(len(groups) / columns)
     fig = figure(view.title, 4.8 if rows == 1 else 3.9 * rows)
     grid = fig.subplots(rows, columns, squeeze=False).ravel()

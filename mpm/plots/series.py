@@ -57,7 +57,14 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
 def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
     """Legend entries of the series: colours, or dashes where colours tell the swept value."""
     looks = [(OKABE_ITO[j % len(OKABE_ITO)], DASHES[0]) if lines is None else (INK, DASHES[j % len(DASHES)]) for j in range(len(names))]
-    return [Line2D([], [], color=colour, ls=dash, label=called(view, name)) for name, (colour, dash) in zip(names, looks, strict=True)]
+    return [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in zip(labels(view, names), looks, strict=True)]
+
+
+def labels(view: View, names: list[str]) -> list[str]:
+    """Series in one legend, apart by their names' second part where the first is the same: `heat, hot between` of two pairs of bodies."""
+    texts = [called(view, name) for name in names]
+    parts = [words.short(view.long_name(name)).split(", ")[1:2] for name in names]
+    return [f"{name.split('_', 1)[0]}, {part[0]}" if part and texts.count(text) > 1 else text for name, text, part in zip(names, texts, parts, strict=True)]
 
 
 def picked(lines: Axis, at: dict[str, int], there: list[int]) -> list[int]:

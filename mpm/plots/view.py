@@ -114,11 +114,13 @@ class View:
         return self.ok & (self.root["warning_flags"].values > 0) if "warning_flags" in self.root else np.zeros_like(self.ok)
 
     def warnings_told(self) -> str:
-        """`with warnings (9 points): volume 7, temperature 4`; empty where there are none."""
+        """`with warnings (9 points): volume 7, temperature 4`, of a single point their kinds; empty where there are none."""
         if not self.warned.any():
             return ""
         found = self.root["warning_flags"].values[self.warned]
         each = {kind: int(np.count_nonzero(found & (1 << place))) for place, kind in enumerate(self.root["warning_flags"].attrs["flag_meanings"].split())}
+        if self.status.size == 1:
+            return f"with warnings: {', '.join(kind for kind, count in each.items() if count)}"
         return f"with warnings ({words.counted(len(found), 'point')}): {counted(each)}"
 
     @cached_property
