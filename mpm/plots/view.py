@@ -188,7 +188,7 @@ class View:
             return bool(values < 1e-9 * self.largest(self.root[name].attrs.get("units", "1")))
         if self.series is not None and name in self.series and name.startswith(("energy", "momentum", "velocity")):
             most = max(np.nanmax(np.abs(self.series[name].values), initial=0.0), 1e-6 * self.largest(self.series[name].attrs.get("units", "1")))
-        return bool(values < 1e-9 * most)
+        return bool(values < max(1e-9 * most, NOTHING * self.largest(self.root[name].attrs.get("units", "1"))))
 
     def largest(self, units: str) -> float:
         """The largest number of all series of a unit."""
