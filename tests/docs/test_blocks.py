@@ -8,6 +8,7 @@ Blocks of `text` are not run. Commands that compute nothing run by default, all 
 """
 
 import functools
+import itertools
 import os
 import re
 import subprocess
@@ -144,5 +145,10 @@ def test_commands_that_compute_nothing(page, folder):
     ids=lambda page: page.stem,
 )
 def test_every_block_runs_in_order(page, folder):
-    for block in blocks(page):
-        run(block, folder)
+    """Python that follows Python goes on in the same session, as a reader types it."""
+    for language, found in itertools.groupby(blocks(page), key=lambda block: block.language):
+        if language == "python":
+            run(Block(language, "\n".join(block.text for block in found), ""), folder)
+        else:
+            for block in found:
+                run(block, folder)
