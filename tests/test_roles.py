@@ -144,7 +144,7 @@ ELSEWHERE = {
     "heat_locally(GridHeating)", "compress(GridHeating)",  # tests/integrate/test_grid_heating.py
     "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
     "act(Given)", "act(Both)", "warm(Warming)", "warm(NoWarming)", "push_at(Force)", "push_at(NoForce)",  # tests/verification/test_sources.py
-    "act(Load)", *(f"{role}({course})" for role in ("share", "within", "opening") for course in ("Ramp", "Within")),  # tests/integrate/test_traction.py, verification/
+    "act(Load)", *(f"{role}({course})" for role in ("share", "within", "opening") for course in ("Ramp", "Within")),  # tests/integrate/test_traction.py
     "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/heat/test_exchange_kinds.py
     "stress_plane(NeoHookean)", "stress_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
