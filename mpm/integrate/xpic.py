@@ -3,8 +3,8 @@
 velocity     q_1 = u_i,   q_(j+1) = q_1 + (1 - P G) q_j,   with P weighted by mass, or by heat capacity, and walls in P as in any scatter
 temperature  theta_p -= (1 - G P)^(k-1) (theta_p - sum w theta_i): what the grid does not see, less what of that it does; theta_i with the particles' slopes
              where they have some, which is beside a surface (mpm.integrate.bounds.needs_slopes). Without, nodes outside it read the particles inside, off by
-             O(h d theta/dn); with them a linear field loses nothing there, and the explicit step is bounded as APIC's is (0.85 to 0.93 of R0 alpha h^2/kappa
-             in clouds in 1-D, orders 2 to 5; without 2.2 to 2.4)
+             O(h d theta/dn); with them a linear field loses nothing there, and the explicit step is bounded about as APIC's is: 1.13 R0 alpha h^2/kappa at
+             the ends of configs/studies/stability/heat_end.yaml (APIC 0.94 to 0.96), without them 2.25 to 2.33
 P G keeps sum m_i q_i, so momentum and heat are kept exactly, whatever the order.
 """
 
