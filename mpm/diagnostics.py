@@ -128,9 +128,11 @@ def heat_since(body, start: np.ndarray) -> float:
     return float(np.sum(m * (enthalpies(thermal.alpha, thermal.zero + thermal.theta.astype(float)) - enthalpies(thermal.alpha, thermal.zero + start))))
 
 
-def kinetic(space, particles) -> float:
-    """1/2 sum m (|v|^2 + sum_d (sum w d^2) |C_d|^2): with the affine part [J]."""
+def kinetic(space, particles, slopes: bool = True) -> float:
+    """1/2 sum m (|v|^2 + sum_d (sum w d^2) |C_d|^2): with the affine part, unless `slopes` is false [J]."""
     still = np.sum(particles.v.astype(float) ** 2, axis=1)
+    if not slopes:
+        return float(0.5 * np.sum(particles.m * still))
     moment = space.h**2 * second_moment(space.basis, particles.x / space.h)  # (N, D), or one number
     swirl = np.sum(moment * np.sum(particles.C.astype(float) ** 2, axis=1), axis=1)
     return float(0.5 * np.sum(particles.m * (still + swirl)))

@@ -33,6 +33,7 @@ from mpm.records.variables import parts
 from mpm.state import PAD, Axisymmetric, Run, Setting, Thermal
 from mpm.total import reference as moving
 from mpm.total.heat import Warmth
+from mpm.transfer import Apic
 
 
 @dataclass
@@ -167,7 +168,8 @@ class Recorder:
         if isinstance(scene.space, Axisymmetric):
             for share in (95, 99):
                 yield f"radius_{share}", radius_holding(0.01 * share, x[:, 0], V)
-        motion = sum(map(moving.kinetic, scene.references)) if scene.references else sum(kinetic(scene.space, body.particles) for body in scene.bodies)
+        slopes = clock.steps > 0 or bool(getattr(scene.scheme, "affine", isinstance(scene.scheme, Apic)))  # a start's slopes, which others drop at once
+        motion = sum(map(moving.kinetic, scene.references)) if scene.references else sum(kinetic(scene.space, body.particles, slopes) for body in scene.bodies)
         elastic, pressure, strain = 0.0, 0.0, 0.0
         for body in scene.bodies:
             e = strains(scene.space, body.particles.B)

@@ -86,3 +86,18 @@ def test_loads_in_the_total_frame(core):
         e = 0.08 * np.exp(e)
     assert run.outcome.ok and run.finals["work_loads"] == pytest.approx(1.07 * e * e / 2, rel=2e-3)
     assert abs(run.finals["dissipation_transfer"]) < 2e-3 * run.finals["work_loads"]
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize(("transfer", "slopes"), [("apic", 1.0), ("flip", 0.0)])
+def test_kinetic_energy_of_a_disc_that_turns(transfer, slopes):
+    """1/4 m R^2 omega^2 (1 - s^2/(3 R^2)) of points s apart, and h^2/R^2 of the slopes that the transfer keeps; nothing is lost at the first step."""
+    ball = {"shape": {"ball": {"centre": [8.2, 7.9], "radius": 5.0}}, "angular_velocity": 3.0, "material": "m"}
+    run = mpm.run_point(mpm.load({
+        "grid": {"dimension": 2, "size": [16.0, 16.0], "cell": 1.0}, "bodies": {"disc": ball},
+        "materials": {"m": {"density": 1.0, "elastic": {"hencky": {"lam": 300.0, "mu": 200.0}}}},
+        "time": {"end": 0.01}, "output": {"every": 0.01}, "method": {"transfer": transfer},
+    }))  # fmt: skip
+    whole = 0.25 * np.pi * 5.0**4 * 9.0
+    assert run.series["energy_kinetic"] == pytest.approx(whole * (1 - 0.25 / 75 + slopes / 25), rel=5e-4)
+    assert np.abs(run.series["dissipation_transfer"]).max() < 1e-4 * whole
