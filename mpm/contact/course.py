@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from mpm.heat.programmes import at, before, bounds, during, turns
-from mpm.state import Within
 
 
 @dataclass
@@ -23,14 +22,15 @@ class Course:
 
     settings: tuple[tuple[np.ndarray, tuple, Any], ...] = ()  # (array, index, programme)
     gravity: tuple = ()  # a programme a direction [m/s2]; nothing where it stays
-    loads: tuple[Within, ...] = ()
+    pasts: tuple[np.ndarray, ...] = ()  # `past` of loads and forces that jump
+    times: tuple[float, ...] = ()  # at which those do [s]
     block: tuple = field(default=(), init=False)  # momentum and mass as a block began, gravity at its steps' ends, dt
 
     @property
     def turns(self) -> tuple[float, ...]:
         """Times at which something jumps [s]."""
         found = {when for *_, one in self.settings for when in turns(one)} | {when for one in self.gravity for when in turns(one)}
-        return tuple(sorted(found | {when for load in self.loads for when in (load.begin, load.end)}))
+        return tuple(sorted(found | {*self.times}))
 
     @property
     def heaviest(self) -> float:
@@ -45,8 +45,8 @@ class Course:
     def lay(self, scene, start: float, dt: float, steps: int, past: float) -> None:
         """All for a block of steps; `past` of its first impulse acts before it. 1: all of it, and nothing is as after `start`."""
         self.set(start, dt * steps, before if past == 1.0 else during)
-        for load in self.loads:
-            load.past[0] = past
+        for array in self.pasts:
+            array[0] = past
         if self.gravity:
             rows = np.array([[at(during(one, start), start + k * dt) for one in self.gravity] for k in range(steps + 1)])
             first = past * np.array([at(before(one, start), start) for one in self.gravity]) + (1.0 - past) * rows[0]

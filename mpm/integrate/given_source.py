@@ -10,7 +10,9 @@ from mpm.heat.local import rise, temperature
 from mpm.integrate.strain import SOURCED, WORKED
 from mpm.integrate.traction import act
 from mpm.jit import role
-from mpm.sources import Both, Force, Given, NoForce, NoWarming, Warming, evaluate
+from mpm.sources import Both, Force, Given, Jumping, NoForce, NoWarming, Warming, evaluate
+
+BEFORE = 3e-9  # of a time: before a jump at it (mpm.sources.formula, AFTER)
 
 
 @role
@@ -56,13 +58,34 @@ def push_at_no_force(force, source, body, first, count, t):
 
 
 @push_at.register(Force)
-def push_at_force(force, source, body, first, count, t):
+@push_at.register(Jumping)
+def push_at_force_or_jumping(force, source, body, first, count, t):
     for i in range(first, first + count):
         source.theta[i] = temperature(body.thermal, i)
     for c in range(len(force.codes)):
         evaluate(force.codes[c], source.X, first, count, t, source.theta, source.stack)
         for i in range(first, first + count):
             source.b[i, c] = source.stack[0, i]
+
+
+@role
+def mix_past(force, source, body, first, count, t):
+    """As a block of steps opens at t: of a force that may jump there, the share of the first impulse that acts before, to source.b."""
+    raise TypeError(f"no force of {type(force).__name__}")
+
+
+@mix_past.register(NoForce)
+@mix_past.register(Force)
+def mix_past_no_force_or_force(force, source, body, first, count, t):
+    return None
+
+
+@mix_past.register(Jumping)
+def mix_past_jumping(force, source, body, first, count, t):
+    for c in range(len(force.codes)):
+        evaluate(force.codes[c], source.X, first, count, t * (1.0 - BEFORE), source.theta, source.stack)
+        for i in range(first, first + count):
+            source.b[i, c] += force.past[0] * (source.stack[0, i] - source.b[i, c])
 
 
 @act.register(Given)
@@ -76,6 +99,8 @@ def act_given(source, body, chunk, first, count, dt, next_dt, report):
     for p in range(count):
         source.t[first + p] += dt
     push_at(source.force, source, body, first, count, source.t[first])
+    if dt == 0.0:
+        mix_past(source.force, source, body, first, count, source.t[first])
     for p in range(count):
         for c in range(D):
             chunk.f[c, p] += next_dt * m[first + p] * source.b[first + p, c]

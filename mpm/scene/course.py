@@ -10,7 +10,7 @@ from mpm.heat.programmes import spell as limited
 from mpm.scene.conventions import SIDES
 from mpm.scene.exchange import most, programme
 from mpm.scene.menus import wall_kind
-from mpm.sources import acting
+from mpm.sources import Given, Jumping, acting
 from mpm.state import Load, Within
 
 
@@ -61,5 +61,8 @@ def course(experiment, met, walls, bodies, references) -> Course | None:
     gravity = tuple(programme(one) for one in experiment.gravity or ())
     gravity = gravity if any(map(changes, gravity)) else ()
     loads = [one.ramp for body in bodies for one in acting(body.source) if isinstance(one, Load)] + [reference.ramp for reference in references]
-    loads = tuple(one for one in loads if isinstance(one, Within))
-    return Course(tuple(found), gravity, loads) if found or gravity or loads else None
+    loads = [one for one in loads if isinstance(one, Within)]
+    forces = [one.force for body in bodies for one in acting(body.source) if isinstance(one, Given) and isinstance(one.force, Jumping)]
+    times = tuple(when for one in loads for when in (one.begin, one.end))
+    pasts = tuple(one.past for one in (*loads, *forces))
+    return Course(tuple(found), gravity, pasts, times) if found or gravity or pasts else None

@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 
-from mpm.config.sources import PLACES, ByFormula
+from mpm.config.sources import KINDS, PLACES, ByFormula
 from mpm.heat.programmes import Parts, Sine, turns
 from mpm.heat.programmes import spell as within
 from mpm.materials.laws import Table
 from mpm.scene.exchange import programme
 from mpm.scene.refusal import SceneError
-from mpm.sources import Both, Code, Force, Given, NoForce, NoWarming, Warming, values
+from mpm.sources import Both, Code, Force, Given, Jumping, NoForce, NoWarming, Warming, values
 from mpm.sources import formula as stack
 from mpm.state import NoSource, Thermal
 
@@ -122,11 +122,11 @@ def heats(experiment, name: str) -> list:
             for entry in entries for kind, factor in kinds if getattr(entry, kind) is not None]  # fmt: skip
 
 
-def moments(experiment) -> tuple[float, ...]:
-    """Times at which a source jumps [s]."""
+def moments(experiment, of: str = "", kinds: tuple[str, ...] = KINDS) -> tuple[float, ...]:
+    """Times at which a source jumps [s]; of one body, and of some kinds, where told."""
     found = set()
-    for entry in experiment.sources:
-        for one in (entry.heat, entry.heat_by_mass, *(entry.force or ())):
+    for entry in (entry for entry in experiment.sources if of in ("", entry.of)):
+        for one in (part for kind in kinds if (what := getattr(entry, kind)) is not None for part in (what if kind == "force" else (what,))):
             whole = 0.0 if one is None or isinstance(one, ByFormula) else programme(one)
             found |= {*turns(within(whole, getattr(entry, "from"), entry.until)), getattr(entry, "from"), entry.until or 0.0} if one is not None else set()
     return tuple(sorted(found - {0.0}))
@@ -146,7 +146,9 @@ def sourced(experiment, name: str, load, particles, thermal):
     theta = thermal.zero + thermal.theta.astype(float) if isinstance(thermal, Thermal) else np.full(len(X), thermal.temperature)
     for code in (*codes, *((heat,) if heat is not None else ())):
         sound(experiment, name, code, X, theta)
-    push, warmth = Force(codes) if codes else NoForce(), Warming(heat) if heat is not None else NoWarming()
+    jumps = any(moments(experiment, name, ("force",)))
+    push = NoForce() if not codes else Jumping(codes, np.zeros(1)) if jumps else Force(codes)
+    warmth = Warming(heat) if heat is not None else NoWarming()
     depth = max(code.depth for code in (*codes, *((heat,) if heat is not None else ())))
     given = Given(X, np.zeros(len(X)), np.zeros(X.shape), np.zeros(len(X)), np.zeros((depth, len(X))), theta.copy(), push, warmth)
     return given if isinstance(load, NoSource) else Both(load, given)

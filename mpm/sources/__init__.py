@@ -8,8 +8,8 @@ Further   formula: formulas of a config, read by compiled code; given: those of 
 """
 
 from mpm.sources.formula import Code, evaluate, values
-from mpm.sources.given import Both, Force, Given, NoForce, NoWarming, Warming, acting
+from mpm.sources.given import Both, Force, Given, Jumping, NoForce, NoWarming, Warming, acting
 from mpm.sources.manufactured import Made
 from mpm.sources.roles import heat, push
 
-__all__ = ["Both", "Code", "Force", "Given", "Made", "NoForce", "NoWarming", "Warming", "acting", "evaluate", "heat", "push", "values"]
+__all__ = ["Both", "Code", "Force", "Given", "Jumping", "Made", "NoForce", "NoWarming", "Warming", "acting", "evaluate", "heat", "push", "values"]

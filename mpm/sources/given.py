@@ -16,7 +16,7 @@ class Given(NamedTuple):
     rest: np.ndarray  # (N,) what a temperature in float32 had no digits for, so far [K]
     stack: np.ndarray  # (depth, N) scratch of formulas
     theta: np.ndarray  # (N,) scratch [K]
-    force: Any  # Force or NoForce
+    force: Any  # Force, Jumping or NoForce
     heat: Any  # Warming or NoWarming
 
 
@@ -24,6 +24,13 @@ class Force(NamedTuple):
     """Force by mass, one formula a direction [m/s2]."""
 
     codes: tuple  # of mpm.sources.Code
+
+
+class Jumping(NamedTuple):
+    """Force by mass that jumps at some time."""
+
+    codes: tuple
+    past: np.ndarray  # (1,) share of the first impulse of a block of steps that acts before the block (mpm.contact.course)
 
 
 class NoForce(NamedTuple):

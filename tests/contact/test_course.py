@@ -173,3 +173,11 @@ def test_a_plan_knows_what_changes():
     found = outlook(mpm.load(scene), None, 1)
     assert "gravity: over time" in found["estimate"]["physics"]["compiled"]
     assert next(group["value"] for group in found["groups"] if group["name"] == "gravity/stiffness") == pytest.approx(0.25 / (100 / (1 - 0.3**2)), rel=0.2)
+
+
+def test_a_body_force_that_jumps(plain):
+    """Of a source from 0.07 to 0.31 s: its impulse to rounding, explicit and implicit; a mass of one."""
+    source = {"of": "bar", "force": [0.3], "from": 0.07, "until": 0.31}
+    for run in plain([FREE | {"sources": [source]}, FREE | {"sources": [source], "method": {"mechanics": "implicit"}, "time": {"end": 0.5, "step": 0.02}}]):
+        assert run["kind"] == "completed"
+        assert run["series"]["momentum_x"][-1] == pytest.approx(0.3 * 0.24, abs=1e-13 if run["facts"].get("mechanics") is None else 1e-6)
