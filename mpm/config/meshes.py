@@ -14,7 +14,7 @@ from mpm.config.shapes_fit import outside
 from mpm.triangles import packed, put
 
 KINDS = (".stl", ".obj", ".ply", ".off")
-MOST_TRIANGLES = 50_000  # triangles
+MOST_TRIANGLES = 25_000  # triangles
 RAYS = 41  # a direction, along which a mesh is looked through
 WATERTIGHT = "a closed mesh: every edge between two triangles, with one side out"
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from mpm.jit import kernel, role
 
-CELLS, OFFERED = 24, 4  # most cells a direction; about so many cells a triangle
+CELLS, OFFERED, BLOCK = 24, 4, 3  # most cells a direction; about so many cells a triangle; cells a direction that are looked at together
+NONE = np.zeros(0, np.int64)
 THIN = 1e-12  # of the box: nearer than this the normal of the surface is taken
 
 
@@ -33,6 +34,7 @@ class Triangles(NamedTuple):
     cell: np.ndarray  # (T,) the first cell of each mesh in
     begin: np.ndarray  # (cells of all + 1,) where a cell's triangles begin in
     offer: np.ndarray  # (K,)
+    beyond: np.ndarray  # (cells of all,) 1 where a cell is farther than `room` outside, 2 where it is that deep inside: those offer none
 
 
 def new_triangles(vertices: np.ndarray, faces: np.ndarray, room: float) -> Triangles:
@@ -42,16 +44,44 @@ def new_triangles(vertices: np.ndarray, faces: np.ndarray, room: float) -> Trian
     count = min(CELLS, max(2, int((OFFERED * len(faces)) ** (1 / 3))))
     shape = np.maximum(1, np.ceil(count * (high - low) / (high - low).max())).astype(np.int64)
     size = (high - low) / shape
-    centre = low + (np.stack(np.unravel_index(np.arange(shape.prod()), shape), axis=-1) + 0.5) * size
-    least, most, marks = corner.min(axis=1), corner.max(axis=1), np.concatenate([vertices[np.unique(faces)], corner.mean(axis=1)])
-    radius, offer = 0.5 * float(np.linalg.norm(size)), []
-    for x in centre:
-        near = np.sqrt(np.min(np.sum((marks - x) ** 2, axis=1))) + 2 * radius
-        apart = np.maximum(0.0, np.maximum(least - x, x - most))
-        offer.append(np.flatnonzero(np.sum(apart * apart, axis=1) <= near * near))
-    begin = np.cumsum([0, *map(len, offer)])
+    least, most, offer = corner.min(axis=1), corner.max(axis=1), {}
+    for index in np.ndindex(*(-(-shape // BLOCK))):  # what a block of cells may be nearest to is enough for each of them
+        begins, ends = np.array(index) * BLOCK, np.minimum((np.array(index) + 1) * BLOCK, shape)
+        some = nearby(low + 0.5 * (begins + ends) * size, 0.5 * float(np.linalg.norm((ends - begins) * size)), room, corner, least, most)
+        one = corner[some], least[some], most[some]
+        for inside in np.ndindex(*(ends - begins)) if len(some) else ():
+            k = begins + inside
+            offer[tuple(k)] = some[nearby(low + (k + 0.5) * size, 0.5 * float(np.linalg.norm(size)), room, *one)]
+    lists = [offer.get(k, NONE) for k in np.ndindex(*shape)]
+    begin = np.cumsum([0, *map(len, lists)])
     one = np.array([0, len(faces)]), low[None], size[None], shape[None], np.zeros(1, np.int64)
-    return Triangles(corner, pseudonormals(vertices, faces), *one, begin, np.concatenate(offer))
+    return Triangles(corner, pseudonormals(vertices, faces), *one, begin, np.concatenate(lists), sides(np.diff(begin).reshape(shape) == 0).ravel())
+
+
+def nearby(x: np.ndarray, radius: float, room: float, corner, least, most) -> np.ndarray:
+    """Numbers of the triangles of which one is the nearest to any point of a ball; none where all are farther than `room`. least, most (F, 3): their boxes."""
+    apart = np.maximum(0.0, np.maximum(least - x, x - most))
+    square = np.sum(apart * apart, axis=1)
+    if np.sqrt(square.min()) > room + radius:
+        return NONE
+    near = np.sqrt(min(np.min(np.sum((corner - x) ** 2, axis=2)), np.min(np.sum((corner.mean(axis=1) - x) ** 2, axis=1)))) + 2 * radius
+    return np.flatnonzero(square <= near * near)
+
+
+def sides(empty: np.ndarray) -> np.ndarray:
+    """Of cells (I, J, K) without triangles: 1 where a way through such cells leads out of the box, else 2; 0 of the others."""
+    out = np.zeros_like(np.pad(empty, 1))
+    free, out[0] = np.pad(empty, 1, constant_values=True), True
+    while True:
+        more = out.copy()
+        for axis in range(3):
+            for way in (-1, 1):
+                more |= np.roll(out, way, axis=axis)
+        more &= free
+        if np.array_equal(more, out):
+            break
+        out = more
+    return np.where(empty, np.where(out[1:-1, 1:-1, 1:-1], 1, 2), 0).astype(np.uint8)
 
 
 def together(meshes: list[Triangles | None]) -> Triangles | NoTriangles:
@@ -59,7 +89,7 @@ def together(meshes: list[Triangles | None]) -> Triangles | NoTriangles:
     if all(one is None for one in meshes):
         return NoTriangles()
     none = Triangles(np.zeros((0, 3, 3)), np.zeros((0, 7, 3)), np.zeros(2, np.int64), *np.ones((2, 1, 3)), np.ones((1, 3), np.int64), np.zeros(1, np.int64),
-                     np.zeros(2, np.int64), np.zeros(0, np.int64))  # fmt: skip
+                     np.zeros(2, np.int64), NONE, np.ones(1, np.uint8))  # fmt: skip
     parts = [none if one is None else one for one in meshes]
     first = np.cumsum([0, *(len(one.corner) for one in parts)])
     offered = np.cumsum([0, *(len(one.offer) for one in parts)])
@@ -67,7 +97,9 @@ def together(meshes: list[Triangles | None]) -> Triangles | NoTriangles:
     offer = np.concatenate([one.offer + at for one, at in zip(parts, first, strict=False)])
     low, size, shape = (np.concatenate([getattr(one, name) for one in parts]) for name in ("low", "size", "shape"))
     cell = np.cumsum([0, *(int(one.shape.prod()) for one in parts)])[:-1]
-    return Triangles(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("corner", "normal")), first, low, size, shape, cell, begin, offer)
+    beyond = np.concatenate([one.beyond for one in parts])
+    whole = (np.concatenate([getattr(one, name) for one in parts]) for name in ("corner", "normal"))
+    return Triangles(*whole, first, low, size, shape, cell, begin, offer, beyond)
 
 
 def pseudonormals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -125,22 +157,23 @@ def nearest_of(tri, y, p):
 
 @kernel
 def signed_to(mesh, t, y, everywhere, n):
-    """phi of mesh t at y (3,), whose gradient n (3,) becomes. Beyond its box of cells: of all triangles where `everywhere`, else as if far away."""
+    """phi of mesh t at y (3,), whose gradient n (3,) becomes. Farther than `room` outside: of all triangles where `everywhere`, else as if far away."""
     cell, outside, count = 0, False, mesh.first[t + 1] - mesh.first[t]
     for a in range(3):
         k = int(np.floor((y[a] - mesh.low[t, a]) / mesh.size[t, a]))
         outside = outside or k < 0 or k >= mesh.shape[t, a]
         cell = cell * mesh.shape[t, a] + k
-    if outside and not everywhere:
+    cell += mesh.cell[t]
+    if (outside or mesh.beyond[cell] == 1) and not everywhere:
         n[0], n[1], n[2] = 0.0, 0.0, 1.0
         return 1e300
-    cell += mesh.cell[t]
-    if not outside:
+    listed = not outside and mesh.beyond[cell] == 0
+    if listed:
         count = mesh.begin[cell + 1] - mesh.begin[cell]
     p, best, out = np.empty(3), np.empty(3), np.empty(3)
     least, width = 1e300, 0.0
     for k in range(count):
-        i = mesh.first[t] + k if outside else mesh.offer[mesh.begin[cell] + k]
+        i = mesh.offer[mesh.begin[cell] + k] if listed else mesh.first[t] + k
         where = nearest_of(mesh.corner[i], y, p)
         square = (y[0] - p[0]) ** 2 + (y[1] - p[1]) ** 2 + (y[2] - p[2]) ** 2
         if square < least:

@@ -4,8 +4,11 @@ Every triangle is split where it crosses a grid plane (`split`). What lies below
 
     int_cell f dV = sum_(pieces in the cell) int (int_z0^z f dz') n_z dA + sum_(pieces above it, in its column) int (int_z0^z1 f dz') n_z dA
 
+or from the top down where more of the cell's surface looks down.
+
 Volume, first moment and area are those of the triangles to rounding, at any offset. A smooth side is what joins triangles at less than SMOOTH.
-Weights of single points of volume may be negative; sums are exact. Fails when   the mesh is open or crosses itself (refused where it is read)
+Weights of single points may be negative where surface looks both ways; sums are exact.
+Fails when   the mesh is open or crosses itself (refused where it is read)
 """
 
 import functools
@@ -80,43 +83,42 @@ class Mesh(Shape):
         points = corner[:, None, 0] + u[:, None] * (corner[:, 1] - corner[:, 0])[:, None] + v[:, None] * (corner[:, 2] - corner[:, 0])[:, None]
         area = twice[:, None] * w
         skin = Skin(points, area, np.repeat(normal[:, None], len(w), axis=1), home, side)
-        whole, below = columns(home, normal, twice, edges)
-        number, low, high = below
-        flux = area[number] * normal[number, 2, None]
-        top = points[number, :, 2] if not len(number) else np.where(np.isnan(high)[:, None], points[number, :, 2], high[:, None])
+        whole, (number, cell, low, high, way) = columns(home, normal, twice, edges)
+        flux = way[:, None] * area[number] * normal[number, 2, None]
+        z = points[number, :, 2]
+        bottom, top = (np.where(np.isnan(end)[:, None], z, end[:, None]) for end in (low, high))
         g, gw = gauss(order // 2 + 1)
-        long = top - low[:, None]
         x = np.repeat(points[number], len(g), axis=1)
-        x[..., 2] = (low[:, None, None] + long[..., None] * g).reshape(len(number), -1)
-        weight = (flux[..., None] * long[..., None] * gw).reshape(len(number), -1)
-        return (Cut(whole, (Batch(x, weight, below_cell(number, home, low, edges)),), (skin,)),)
+        x[..., 2] = (bottom[..., None] + (top - bottom)[..., None] * g).reshape(len(number), -1)
+        weight = (flux[..., None] * (top - bottom)[..., None] * gw).reshape(len(number), -1)
+        return (Cut(whole, (Batch(x, weight, cell),), (skin,)),)
 
 
 def columns(home, normal, twice, edges):
-    """Cells that are full; and (piece, bottom of a cell, its top or NaN: up to the piece) for all cut cells and the pieces in and above them."""
+    """Cells that are full; and of cut ones (piece, cell, bottom, top, +1 or -1): strips of height from bottom to top below or above pieces, NaN is the piece.
+
+    Below the pieces in a cell and above it, where most of its surface looks up; else above those in it and below: so points lie inside, but for odd cells.
+    """
     Z, tall = edges[2], len(edges[2]) - 1
     up = np.flatnonzero(np.abs(normal[:, 2]) > EDGE)
     column, layer = home // tall, home % tall
-    total = np.bincount(home[up], weights=0.5 * twice[up] * normal[up, 2], minlength=int(np.prod([len(e) - 1 for e in edges]))).reshape(-1, tall)
-    above = np.cumsum(total[:, ::-1], axis=1)[:, ::-1] - total
-    size = np.multiply.outer(np.diff(edges[0]), np.diff(edges[1])).reshape(-1, 1)
-    cut = np.unique(home)
-    full = above > 0.5 * size
+    total = np.bincount(home[up], weights=0.5 * twice[up] * normal[up, 2], minlength=int(np.prod([len(e) - 1 for e in edges])))
+    above = np.cumsum(total.reshape(-1, tall)[:, ::-1], axis=1)[:, ::-1] - total.reshape(-1, tall)
+    cut, sense = np.unique(home), np.where(total < 0, -1.0, 1.0)
+    full = above > 0.5 * np.multiply.outer(np.diff(edges[0]), np.diff(edges[1])).reshape(-1, 1)
     full.reshape(-1)[cut] = False
     order = up[np.argsort(home[up], kind="stable")]  # by column, then by height
-    first, last = np.searchsorted(home[order], cut, side="right"), np.searchsorted(column[order], cut // tall, side="right")
+    upward = sense[cut] > 0
+    first = np.where(upward, np.searchsorted(home[order], cut, side="right"), np.searchsorted(column[order], cut // tall, side="left"))
+    last = np.where(upward, np.searchsorted(column[order], cut // tall, side="right"), np.searchsorted(home[order], cut, side="left"))
     many = last - first
     steps = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-    over = order[np.repeat(first, many) + steps]
-    floor = np.repeat(cut % tall, many)
-    number, bottom = np.concatenate([up, over]), np.concatenate([layer[up], floor])
-    return np.flatnonzero(full), (number, Z[bottom], np.concatenate([np.full(len(up), np.nan), Z[floor + 1]]))
-
-
-def below_cell(number, home, low, edges) -> np.ndarray:
-    """The cell in the column of each piece whose bottom is `low`."""
-    tall = len(edges[2]) - 1
-    return home[number] // tall * tall + np.searchsorted(edges[2], low, side="right") - 1
+    over, cells = order[np.repeat(first, many) + steps], np.repeat(cut, many)
+    own = sense[home[up]] > 0
+    low = np.concatenate([np.where(own, Z[layer[up]], np.nan), Z[cells % tall]])
+    high = np.concatenate([np.where(own, np.nan, Z[layer[up] + 1]), Z[cells % tall + 1]])
+    every = np.concatenate([home[up], cells])
+    return np.flatnonzero(full), (np.concatenate([up, over]), every, low, high, sense[every])
 
 
 def on_triangle(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -136,24 +138,22 @@ def split(corner: np.ndarray, side: np.ndarray, edges) -> tuple[np.ndarray, np.n
             crossed = (away.min(axis=1) < 0) & (away.max(axis=1) > 0)
             if not crossed.any():
                 continue
-            parts = [halved(t, d) for t, d in zip(corner[crossed], away[crossed], strict=True)]
-            corner = np.concatenate([corner[~crossed], *parts])
-            side = np.concatenate([side[~crossed], np.repeat(side[crossed], [len(part) for part in parts])])
+            parts, whose = halved(corner[crossed], away[crossed])
+            corner = np.concatenate([corner[~crossed], parts])
+            side = np.concatenate([side[~crossed], side[crossed][whose]])
     return corner, side
 
 
-def halved(t: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """A triangle (3, 3) with signed distances d (3,) to a plane that crosses it, in two or three of the same sense."""
-    k = int(np.argmax((d != 0) & ((np.sign(d) != np.sign(np.roll(d, -1))) & (np.sign(d) != np.sign(np.roll(d, 1))))))  # alone on its side
-    (a, b, c), (da, db, dc) = np.roll(t, -k, axis=0), np.roll(d, -k)
-    p = a + da / (da - db) * (b - a) if db else b
-    q = a + da / (da - dc) * (c - a) if dc else c
-    parts = [(a, p, q)] + ([(p, b, c)] if db else []) + ([(p, c, q)] if dc else [])
-    if not db:
-        parts = [(a, p, q), (p, c, q)]
-    elif not dc:
-        parts = [(a, p, q), (p, b, q)]
-    return np.array(parts)
+def halved(t: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (F, 3, 3) with signed distances d (F, 3) to a plane that crosses them, each in two or three of the same sense; and whose part each is."""
+    signs = np.sign(d)
+    alone = np.argmax((signs != 0) & (signs != np.roll(signs, -1, axis=1)) & (signs != np.roll(signs, 1, axis=1)), axis=1)  # on its side of the plane
+    turn = (alone[:, None] + np.arange(3)) % 3
+    (a, b, c), (da, db, dc) = np.moveaxis(np.take_along_axis(t, turn[:, :, None], axis=1), 1, 0), np.take_along_axis(d, turn, axis=1).T
+    p = np.where((db == 0)[:, None], b, a + (da / (da - db))[:, None] * (b - a))
+    q = np.where((dc == 0)[:, None], c, a + (da / (da - dc))[:, None] * (c - a))
+    parts = [(np.stack([a, p, q], axis=1), da != 0), (np.stack([p, b, c], axis=1), db != 0), (np.stack([p, c, q], axis=1), dc != 0)]
+    return np.concatenate([one[there] for one, there in parts]), np.concatenate([np.flatnonzero(there) for _, there in parts])
 
 
 @functools.lru_cache(maxsize=16)

@@ -9,6 +9,7 @@ import pytest
 import mpm
 from mpm.config.meshes import Unfit, checked
 from mpm.contact.triangles import new_triangles, signed_to, together
+from mpm.runner import run_named
 from mpm.scene.build import build
 from mpm.scene.mesh import Mesh
 from mpm.scene.shapes import Box, cells, cut_quadrature
@@ -164,3 +165,25 @@ def test_what_is_wrong_has_a_place(tmp_path):
     plane["method"]["offset"], plane["bodies"]["toy"]["shape"] = [0, 0], {"mesh": {"file": "toy.stl"}}
     with pytest.raises(mpm.ConfigError, match="there is no mesh in dimension 2"):
         mpm.load(plane)
+
+
+@pytest.mark.slow
+def test_a_ball_of_triangles_warms_as_the_ball():
+    """512 triangles of the ball's volume, eight cells across, heat alone by implicit steps: mean temperature within 0.5 % of the rise."""
+    vertices, faces = ball(3)
+    volume = np.einsum("fa,fa->", vertices[faces][:, 0], np.cross(vertices[faces][:, 1], vertices[faces][:, 2])) / 6
+    round_one = {"ball": {"centre": [0.5] * 3, "radius": 0.3}}
+    tessellated = {"mesh": {"file": "ball.stl", "data": packed(0.5 + 0.3 * (4 / 3 * np.pi / volume) ** (1 / 3) * vertices, faces)}}
+    found = []
+    for shape in (round_one, tessellated):
+        scene = {
+            "grid": {"dimension": 3, "size": [14 * 0.075] * 3, "cell": 0.075},
+            "bodies": {"b": {"shape": shape, "temperature": 300, "material": "m"}},
+            "materials": {"m": {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}},
+            "surfaces": [{"of": "b", "convection": {"beta": 5, "outside": 400}}],
+            "time": {"end": 0.05}, "output": {"every": 0.01}, "method": {"rigid": "implicit"},
+        }  # fmt: skip
+        run = run_named(mpm.load(scene))
+        assert run.outcome.ok, run.outcome
+        found.append(run.series["temperature_mean"])
+    assert found[1][-1] - 300 == pytest.approx(found[0][-1] - 300, rel=5e-3)
