@@ -138,7 +138,8 @@ def deepest(one: Shape, other: Shape, h: float) -> tuple[float, np.ndarray]:
         if np.any(high - low > 1e3 * h):
             continue  # a plate far larger than what it meets: the other's surface says it
         edges = [np.linspace(p, q, max(2, min(60, int((q - p) / (0.25 * h)) + 1))) for p, q in zip(low, high, strict=True)]
-        points = cut_quadrature(a, edges, 2)[1].x
+        points, (least, most) = cut_quadrature(a, edges, 2)[1].x, b.bounds()
+        points = points[np.all((points > least) & (points < most), axis=1)]  # no other can lie inside
         depth = -b.distance(points)
         if len(points) and depth.max() > found:
             found, place = float(depth.max()), points[int(np.argmax(depth))]
