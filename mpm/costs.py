@@ -36,7 +36,7 @@ COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 LOOKED = 50_000  # particles of a scene that are all made to see its limits
-IMPLICIT = {1: 45e-6, 2: 45e-6, 3: 120e-6}  # s a particle and implicit step, heat included, by directions
+IMPLICIT = {1: 45e-6, 2: 45e-6, 3: 200e-6}  # s a particle and implicit step, heat included, by directions
 IMPLICIT_STEPS, WORTH = 40, 50.0  # steps at tolerance 1e-4; see by_mechanics
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
