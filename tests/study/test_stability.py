@@ -89,6 +89,7 @@ def test_growth_rates_are_shades_and_lines_of_one_name_one_entry(tmp_path):
     points = tree["points"].dataset
     rate = np.where(np.arange(len(points.entry)) % 3, np.linspace(0.01, 1.0, len(points.entry)), np.nan)
     tree["points"] = points.assign(growth=("entry", rate))
+    tree.attrs["growth_of"] = "energy_kinetic"
     figure = draw(tree)
     assert [entry.get_text() for entry in figure.legends[0].get_texts()].count("limit") == 1
     shades = [to_hex(colour) for ax in figure.axes[:2] for marks in ax.collections[1:] for colour in np.atleast_2d(marks.get_facecolor())]
