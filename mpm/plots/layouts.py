@@ -122,7 +122,7 @@ def series_of(view: View) -> list[str]:
     there = view.series_names()
     if asked := [name for name in view.asked if view.series is not None and name in view.series and "time" in view.series[name].dims]:
         return [name for name in asked if view.kin(name) == view.kin(asked[0])][:4]
-    errors = [name for name in ("error_l2", "error_max") if name in there]
+    errors: list[str] = [name for name in ("error_l2", "error_max") if name in there]
     probes = [name for name in view.probes if name in there]
     return probes[:4] or errors or (view.families()[0][:4] if there else [])
 
