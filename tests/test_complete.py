@@ -100,8 +100,8 @@ def test_shape(kind, dimension):
 
 
 def test_shapes_are_the_menu_and_only_a_point_is_a_point():
-    assert {one.kind for one in SHAPES} == {*SIZES, "point"}
-    assert {one.kind: set(where) for one, where in WHERE.items()} == {kind: set(exact) for kind, (_, exact) in SIZES.items()} | {"point": {0}}
+    assert {one.kind for one in SHAPES} == {*SIZES, "mesh", "point"}  # a mesh is a file: tests/scene/test_mesh.py
+    assert {one.kind: set(where) for one, where in WHERE.items()} == {kind: set(exact) for kind, (_, exact) in SIZES.items()} | {"mesh": {3}, "point": {0}}
     assert any(path.startswith("bodies.body.shape") for path in refused(config("moving", 1, POINT)))
 
 

@@ -36,6 +36,7 @@ def test_a_command_that_fails_or_draws_nothing_is_a_fault(tmp_path, monkeypatch)
     made = Shown(CONFIGS / "scenes/slab.yaml", tmp_path)
     assert not made.mpm("plot", str(tmp_path / "nothing")) and "exit code 2" in made.faults[0]
     monkeypatch.setattr(contact_sheet.Shown, "mpm", lambda *_, **__: True)
+    monkeypatch.setattr(contact_sheet, "figures", lambda *_: None)
     assert show(CONFIGS / "scenes/slump.yaml", tmp_path, True).faults == ["no picture"]
 
 
