@@ -4,7 +4,7 @@ Every row runs in a copy of each checkout, by this Python, its compile cache emp
 
 scenes  processor seconds, wall seconds and the largest memory of `mpm run SCENE --smoke`      main   wall seconds of `mpm sweep configs/scenes/loaf.yaml`
 edit    the cube again after an edit of guards.py                                             ball   set-up of a ball of 932 000 particles in 3-D
-warm    `mpm bench --n 64 --np 100000`: milliseconds a step, 3-D f64 and 2-D f32, and seconds of a slump, compiled before
+warm    `mpm bench --np 100000`: milliseconds a step, 3-D f64 and 2-D f32, and seconds of a slump, compiled before
 """
 
 import json
@@ -82,9 +82,9 @@ def edit(place: Path, cache: Path) -> dict[str, float]:
 
 def warm(place: Path, cache: Path) -> dict[str, float]:
     found = {}
-    for dim, dtype in (("3", "f64"), ("2", "f32")):
+    for dim, dtype, n in (("3", "f64", "64"), ("2", "f32", "256")):
         for _ in range(2):  # the first compiles
-            said = timed(place, cache, MPM, "bench", "--n", "64", "--np", "100000", "--dim", dim, "--dtype", dtype)[1]
+            said = timed(place, cache, MPM, "bench", "--n", n, "--np", "100000", "--dim", dim, "--dtype", dtype)[1]
         found[f"{dim}-D {dtype} ms"] = json.loads(said.strip().splitlines()[-1])["med_ms"]
     return found | {"slump s": float(timed(place, cache, SLUMP)[1].strip().splitlines()[-1])}
 
