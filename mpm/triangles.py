@@ -54,3 +54,8 @@ def lines(about: dict[str, Any]) -> list[np.ndarray]:
     sharp = pairs[np.sum(normal[pairs[:, 0]] * normal[pairs[:, 1]], axis=1) < SMOOTH]
     drawn = sharp if len(sharp) else pairs
     return [vertices[np.intersect1d(faces[one], faces[two])[:2]] for one, two in drawn[:: 1 + len(drawn) // DRAWN]]
+
+
+def placed(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices in metres where the config puts them, and faces, of its shape `mesh`."""
+    return put(model.data, model.unit, model.centre)

@@ -11,7 +11,7 @@ import numpy as np
 from mpm.config.explain import Finding
 from mpm.config.problems import brief
 from mpm.config.shapes_fit import outside
-from mpm.triangles import packed, put
+from mpm.triangles import packed
 
 KINDS = (".stl", ".obj", ".ply", ".off")
 MOST_TRIANGLES = 25_000  # triangles
@@ -25,11 +25,6 @@ class Unfit(Exception):
 
     message: str
     allowed: str = WATERTIGHT
-
-
-def placed(model: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices in metres where the config puts them, and faces, of a shape `mesh`."""
-    return put(model.data, model.unit, model.centre)
 
 
 def read(path: Path) -> tuple[np.ndarray, np.ndarray]:

@@ -95,7 +95,7 @@ def holds(shape: Any, point: tuple[float, ...], slack: float) -> bool:
 
 def corners(shape: Mesh) -> Any:
     """Vertices and faces of a mesh [m]."""
-    from mpm.config.meshes import placed
+    from mpm.triangles import placed
 
     if not shape.data:
         raise Unknown  # it is read once the rest is known to be right
