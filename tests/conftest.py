@@ -174,17 +174,21 @@ def pytest_runtest_protocol(item, nextitem):
 
 
 def without_compiler(config, tests):
-    """Run tests of one module in a child process: their reports."""
-    with tempfile.NamedTemporaryFile("r") as told:
-        command = [sys.executable, "-m", "pytest", "--numprocesses=0", "-m", config.option.markexpr, *tests]
-        env = os.environ | {"NUMBA_DISABLE_JIT": "1", "MPM_TEST_REPORTS": told.name}
-        done = subprocess.run(command, cwd=config.rootpath, env=env, capture_output=True, text=True, check=False)
+    """Run tests of one module without the compiler: their reports."""
+    if not hasattr(config, "plain_server"):
+        config.plain_server = subprocess.Popen([sys.executable, Path(__file__).parent / "plain_server.py"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                               text=True, cwd=config.rootpath, env=os.environ | {"NUMBA_DISABLE_JIT": "1"})  # fmt: skip
+    server = config.plain_server
+    with tempfile.NamedTemporaryFile("r") as told, tempfile.NamedTemporaryFile("r") as printed:
+        asked = {"arguments": ["--numprocesses=0", "-m", config.option.markexpr, *tests], "reports": told.name, "output": printed.name}
+        print(json.dumps(asked), file=server.stdin, flush=True)
+        server.stdout.readline()
         reports = {test: [] for test in tests}
         for line in told:
             report = config.hook.pytest_report_from_serializable(config=config, data=json.loads(line))
             reports[report.nodeid].append(report)
-    if not all(reports.values()):
-        raise RuntimeError(f"tests without the compiler did not run to their end\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
+        if not all(reports.values()):
+            raise RuntimeError(f"tests without the compiler did not run to their end\n{printed.read()[-3000:]}")
     return reports
 
 
