@@ -12,7 +12,7 @@ import pytest
 
 import mpm.runner
 import mpm.scene.build
-import mpm.simulation
+import mpm.simulation  # noqa: F401
 
 
 def run(arguments: list[str], reports: str, output: str) -> None:

@@ -37,7 +37,7 @@ ROUNDS, LONG = 5, 2.0
 
 
 @dataclass(frozen=True)
-class Line:
+class CostRow:
     """One row of the table."""
 
     name: str
@@ -55,7 +55,7 @@ class Line:
         return f"| {self.name} | {self.predicted:.3g} | {self.measured:.3g} | {self.ratio:.2f} | {', '.join(f'{k} {v}' for k, v in self.counts.items())} |"
 
 
-def measure(name: str, changes: dict[str, Any]) -> Line:
+def measure(name: str, changes: dict[str, Any]) -> CostRow:
     """Foretell and run one config."""
     from mpm.config import load
     from mpm.runner import estimate, run_point
@@ -70,7 +70,7 @@ def measure(name: str, changes: dict[str, Any]) -> Line:
         rounds.append(time.process_time() - began)
     counts = {"particles": found["particles"], "steps": run.steps, "heat steps": run.facts.get("heat_steps", 0), "outputs": len(run.times)}
     label = ", ".join([name.rsplit("/", maxsplit=1)[-1], *(f"{path} {value}" for path, value in changes.items())])
-    return Line(label, found["seconds"], min(rounds), counts)
+    return CostRow(label, found["seconds"], min(rounds), counts)
 
 
 def main() -> None:

@@ -32,7 +32,7 @@ of it, choosing included.
 
 
 @dataclass(frozen=True)
-class Line:
+class ReductionRow:
     """One row of the table."""
 
     name: str
@@ -63,7 +63,7 @@ class Line:
         return f"| {self.name} | {', '.join(self.asked)} | {self.model} | {dropped} | {' | '.join(numbers)} | {self.saving:.3g} |"
 
 
-def measure(path: Path) -> Line:
+def measure(path: Path) -> ReductionRow:
     """Run one config both ways. A full model that does not complete leaves nothing to compare with: its error is infinite."""
     from mpm.config import load
     from mpm.reduce.difference import gap
@@ -82,13 +82,13 @@ def measure(path: Path) -> Line:
                 runs[which] = run_point(experiment)
                 seconds[which].append(time.perf_counter() - began)
     said, apart = runs["auto"].facts["model"], gap(runs["full"], runs["auto"], asked(full), driving(full))
-    return Line(
+    return ReductionRow(
         path.stem, tuple(apart), said["name"], tuple(one["dropped"] for one in said["dropped"]), said["predicted"], tuple(one["by"] for one in said["dropped"]),
         max(apart.values()), min(seconds["full"]), min(seconds["auto"]), said["tolerance"],
     )  # fmt: skip
 
 
-def kept(path: Path, store: Path) -> Line:
+def kept(path: Path, store: Path) -> ReductionRow:
     """The line of a config: what was measured of just this config by just this source, else measured now and kept."""
     from mpm.config import load
     from mpm.records.netcdf import write_whole
@@ -101,10 +101,10 @@ def kept(path: Path, store: Path) -> Line:
         store.parent.mkdir(parents=True, exist_ok=True)
         write_whole(store, json.dumps(known, indent=1).encode())
     line = known[path.stem]["line"]
-    return Line(**{name: tuple(value) if isinstance(value, list) else value for name, value in line.items()})
+    return ReductionRow(**{name: tuple(value) if isinstance(value, list) else value for name, value in line.items()})
 
 
-def summary(lines: list[Line]) -> str:
+def summary(lines: list[ReductionRow]) -> str:
     """The table in a sentence."""
     held, fast = sum(line.held for line in lines), sum(line.saving >= 10 for line in lines)
     above = sum(line.error <= max(line.predicted, 1e-6) for line in lines)

@@ -48,7 +48,7 @@ WAVE = """
 
 
 @dataclass(frozen=True)
-class Line:
+class ProblemRow:
     """One row of the table."""
 
     name: str
@@ -121,7 +121,7 @@ def method(experiment) -> str:
     return ", ".join(words)
 
 
-def measure(path: Path) -> Line:
+def measure(path: Path) -> ProblemRow:
     """Run one config at its three resolutions. RuntimeError where one does not complete."""
     from mpm.config import load
     from mpm.runner import run_point
@@ -143,7 +143,7 @@ def measure(path: Path) -> Line:
                 beside[other] = (*beside.get(other, ()), run.finals[other])
     problem = importlib.import_module(f"mpm.verification.{type(experiment.exact).kind}")
     declared = getattr(experiment.exact, "order", getattr(problem, "ORDERS", {}).get(experiment.method.frame, problem.ORDER))
-    return Line(path.stem, method(experiment), refined, values, name, tuple(errors), declared, seconds, beside)
+    return ProblemRow(path.stem, method(experiment), refined, values, name, tuple(errors), declared, seconds, beside)
 
 
 def written(text: str) -> tuple[dict[str, str], str]:

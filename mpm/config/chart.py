@@ -11,7 +11,7 @@ Refined = Annotated[tuple[Any, ...], Field(min_length=1)]
 Paths = dict[str, dict[str, Refined]]
 
 
-class Line(Model):
+class ChartMethod(Model):
     """One method."""
 
     set: dict[str, Any] = doc({}, description="parameter: value, what makes the method")
@@ -30,5 +30,5 @@ class Chart(Model):
     )
     reference: str | None = doc(None, description="the method whose finest settings give that limit; the first unless given")
     repeats: Annotated[int, Whole("rounds", 1, 1000)] = doc(5, description="rounds of timing; five or more for a figure")
-    methods: dict[str, Line] = doc({}, description="methods by name; by the physics of the config unless given")
+    methods: dict[str, ChartMethod] = doc({}, description="methods by name; by the physics of the config unless given")
     refine: Paths = doc({}, description="name of a path of refinement: {parameter: values from coarse to fine, which move together}")

@@ -86,58 +86,86 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     run [s], for what jumps. The range of temperatures and `zero` are those of the whole run."""
     kappa, alpha = law(body.kappa), law(body.alpha)
     sides = tuple(entry[0] for entry in (*body.surfaces, *body.fluxes, *body.radiation))
-    place = body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides
-    shaped = (hat_geometry if hats else geometry)(*place, others)
-    n = len(body.surfaces)
-    most = [float(bounds(beta)[1]) for _, beta, _ in body.surfaces]
-    around = [outside for (_, _, outside), beta in zip(body.surfaces, most, strict=True) if beta > 0]
-    around += [sky for _, emissivity, sky in body.radiation if bounds(emissivity)[1] > 0]
-    data = [float(t) for t in (body.temperature, *(t for one in around for t in bounds(one)))]
-    if body.field is not None:
-        data += [float(t) for t in (np.min(body.field(shaped.x)), np.max(body.field(shaped.x)))]
+    shaped = (hat_geometry if hats else geometry)(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides, others)
+    data = temperatures(body, shaped)
     conductivity = max(value(kappa, t) for t in data)
-    betas = [during(beta, moment) for _, beta, _ in body.surfaces]
-    most, betas = ([PENALTY * conductivity / h if math.isinf(beta) else beta for beta in those] for those in (most, betas))
-    depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
-    stiffest = int(np.argmax(most)) if most else 0
-    zero = float(at(body.surfaces[stiffest][2], 0.0)) if most and most[stiffest] * depth > conductivity else float(body.temperature)
-    exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
-    for k, ((_, _, outside), beta, stencil, area) in enumerate(zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False)):
-        outside = during(outside, moment)
-        if beta > 0:
-            beta = over_depth(beta, shaped.depth[k], conductivity) if hats else beta
-            exchange += beta * stencil
-            facing += beta * area
-            if isinstance(outside, int | float):
-                steady += beta * (outside - zero) * area
-            else:
-                forcing.append((outside, beta * area))
-    low, high, given = min(data), max(data), []
-    ends = [bounds(q) for _, q in body.fluxes]
-    between = (-math.inf if any(least < 0 for least, _ in ends) else low, math.inf if any(greatest > 0 for _, greatest in ends) else high)
-    for (_, q), (least, greatest), area in zip(body.fluxes, ends, shaped.area[n:], strict=False):
-        now = during(q, moment)
-        if isinstance(now, int | float):
-            steady += now * area
-        else:
-            given.append((now, area))
-        for extreme in {least, greatest} - {0.0}:
-            rise = abs(extreme) * float(area.sum()) * end / (body.density * float(shaped.volume.sum()) * min(value(alpha, t) for t in data))
-            steep = abs(extreme) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
-            data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if extreme > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
+    betas, zero = coefficients(body, shaped, conductivity, h, moment)
+    exchange, facing, steady, forcing = convection(body, shaped, betas, zero, conductivity if hats else None, moment)
+    steady, given, data, bounded = fluxes(body, shaped, steady, data, alpha, conductivity, end, moment)
     through = 0.0 if any(turns(beta) for _, beta, _ in body.surfaces) else float(facing.sum())
     heated, grown, sunk = sources_of(body, shaped, conductivity, through, min(value(alpha, t) for t in data), end, moment)
     steady, given, data = steady + heated.steady, [*given, *heated.given], [*data, max(data) + grown, max(min(data) - sunk, 0.5 * min(data))]
-    between = -math.inf if sunk > 0 else between[0], math.inf if grown > 0 else between[1]
-    radiant, hot = radiating(body, shaped, zero, n + len(body.fluxes), max(data), moment)
+    bounded = -math.inf if sunk > 0 else bounded[0], math.inf if grown > 0 else bounded[1]
+    radiant, hot = radiating(body, shaped, zero, len(body.surfaces) + len(body.fluxes), max(data), moment)
     span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
     stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
     skies = tuple(float(sky) if isinstance(sky, int | float) else sky for sky in (during(sky, moment) for _, _, sky in body.radiation))
     programmes = Programmes(steady, tuple(forcing), tuple(given), skies, zero, heated.within)
     return System(
         shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
-        max(data), stiff, between,
+        max(data), stiff, bounded,
     )  # fmt: skip
+
+
+def temperatures(body: RigidBody, shaped: Geometry) -> list[float]:
+    """Temperatures that the body starts at and that its surroundings take at any time [K]; not of what exchanges nothing."""
+    around = [outside for _, beta, outside in body.surfaces if bounds(beta)[1] > 0]
+    around += [sky for _, emissivity, sky in body.radiation if bounds(emissivity)[1] > 0]
+    data = [float(t) for t in (body.temperature, *(t for one in around for t in bounds(one)))]
+    if body.field is not None:
+        field = body.field(shaped.x)
+        data += [float(np.min(field)), float(np.max(field))]
+    return data
+
+
+def coefficients(body: RigidBody, shaped: Geometry, conductivity: float, h: float, moment: float) -> tuple[list[float], float]:
+    """(beta of each surface at a moment, a number where it is infinite [W/(m2 K)]; the temperature that others are relative to [K])."""
+    finite = PENALTY * conductivity / h
+    most = [finite if math.isinf(beta) else beta for beta in (float(bounds(beta)[1]) for _, beta, _ in body.surfaces)]
+    betas = [finite if math.isinf(beta) else beta for beta in (during(beta, moment) for _, beta, _ in body.surfaces)]
+    depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
+    stiffest = int(np.argmax(most)) if most else 0
+    zero = float(at(body.surfaces[stiffest][2], 0.0)) if most and most[stiffest] * depth > conductivity else float(body.temperature)
+    return betas, zero
+
+
+def convection(
+    body: RigidBody, shaped: Geometry, betas: list[float], zero: float, conductivity: float | None, moment: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list]:
+    """(stencil of sum beta B, sum beta int N, heat from surroundings that stay [W], what follows surroundings that change). conductivity: of hats, else None."""
+    exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
+    for k, ((_, _, outside), beta, stencil, area) in enumerate(zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False)):
+        if beta == 0:
+            continue
+        outside = during(outside, moment)
+        beta = beta if conductivity is None else over_depth(beta, shaped.depth[k], conductivity)
+        exchange += beta * stencil
+        facing += beta * area
+        if isinstance(outside, int | float):
+            steady += beta * (outside - zero) * area
+        else:
+            forcing.append((outside, beta * area))
+    return exchange, facing, steady, forcing
+
+
+def fluxes(
+    body: RigidBody, shaped: Geometry, steady: np.ndarray, data: list[float], alpha: Any, conductivity: float, end: float, moment: float
+) -> tuple[np.ndarray, list, list[float], tuple[float, float]]:
+    """(heat that is steady with that of fluxes [W], fluxes that change, temperatures that they may reach [K], bounds that no temperature may pass [K])."""
+    data, given, ends = list(data), [], [bounds(q) for _, q in body.fluxes]
+    bounded = -math.inf if any(least < 0 for least, _ in ends) else min(data), math.inf if any(greatest > 0 for _, greatest in ends) else max(data)
+    capacity = body.density * float(shaped.volume.sum())
+    for (_, q), (least, greatest), area in zip(body.fluxes, ends, shaped.area[len(body.surfaces) :], strict=False):
+        now = during(q, moment)
+        if isinstance(now, int | float):
+            steady += now * area
+        else:
+            given.append((now, area))
+        for extreme in {least, greatest} - {0.0}:
+            rise = abs(extreme) * float(area.sum()) * end / (capacity * min(value(alpha, t) for t in data))
+            steep = abs(extreme) * float(np.ptp(shaped.x, axis=0).max()) / max(conductivity, 1e-300)
+            data += [max(data) + min(rise, 1e4) + min(steep, 1e4)] if extreme > 0 else [max(min(data) - rise - steep, 0.5 * min(data))]
+    return steady, given, data, bounded
 
 
 def sources_of(

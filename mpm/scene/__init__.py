@@ -5,6 +5,7 @@ cut         exact quadrature of a shape cut by a grid
 contents    what each cell holds of a shape, and one particle a cell
 
 Further files
+    base               Shape, the role of every shape
     build              from a validated experiment to a scene of moving bodies
     conventions        what a dimension brings
     course             what a config lets change over time beside heat

@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mpm.contact.triangles import Triangles, new_triangles, pseudonormals, signed_all
+from mpm.scene.base import Shape
 from mpm.scene.cut import EDGE, Batch, Cut, Skin, gauss, locate
-from mpm.scene.shapes import Shape
 from mpm.triangles import SMOOTH, neighbours, placed
 
 ROOM = 0.1  # of the largest edge of the box, about the mesh, in which distances are looked up

@@ -11,10 +11,11 @@ import itertools
 import numpy as np
 
 from mpm.follow import Carried, carried
+from mpm.scene.base import Shape
 from mpm.scene.contents import nearest
 from mpm.scene.cut import Segment
 from mpm.scene.mesh import Mesh
-from mpm.scene.shapes import Ball, Box, Cylinder, Shape, shape
+from mpm.scene.shapes import Ball, Box, Cylinder, shape
 
 SINGLE = np.float32  # of weights: of a length of half a particle
 

@@ -9,12 +9,13 @@ from mpm.contact.drive import Drive, Told
 from mpm.contact.tools import Tools
 from mpm.contact.triangles import together
 from mpm.heat.programmes import at
+from mpm.scene.base import Shape
 from mpm.scene.conventions import spin_tensor
 from mpm.scene.exchange import programme
 from mpm.scene.law import elastic_law
 from mpm.scene.mesh import Mesh
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, Shape, cut_quadrature, shape
+from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, cut_quadrature, shape
 
 MOST_STEPS = 64  # of a block
 OVERLAP = 0.05  # cells

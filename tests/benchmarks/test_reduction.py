@@ -5,14 +5,14 @@ import json
 import pytest
 
 from mpm.benchmarks import reduction
-from mpm.benchmarks.reduction import FOLDER, Line, kept, summary
+from mpm.benchmarks.reduction import FOLDER, ReductionRow, kept, summary
 
 
 def test_a_line_of_the_study():
-    line = Line("a", ("temperature_mean",), "lumped", ("inside",), 0.005, ("estimate",), 0.002, 2.0, 0.01, 0.01)
+    line = ReductionRow("a", ("temperature_mean",), "lumped", ("inside",), 0.005, ("estimate",), 0.002, 2.0, 0.01, 0.01)
     assert line.held and line.saving == 200
     assert line.text() == "| a | temperature_mean | lumped | inside | 0.005 | estimate | 0.002 | 2 | 0.01 | 200 |"
-    bad = Line("b", (), "full", (), 0.0, (), float("inf"), 1.0, 1.0, 0.01)
+    bad = ReductionRow("b", (), "full", (), 0.0, (), float("inf"), 1.0, 1.0, 0.01)
     assert "1 of 2; ten times as fast or more: 1; error below what was predicted: 1" in summary([line, bad])
 
 
@@ -28,7 +28,7 @@ def test_what_was_measured_is_kept(tmp_path, monkeypatch):
 
     def fake(path):
         calls.append(path.stem)
-        return Line(path.stem, ("temperature_mean",), "lumped", (), 0.1, (), 0.0, 1.0, 0.5, 0.01)
+        return ReductionRow(path.stem, ("temperature_mean",), "lumped", (), 0.1, (), 0.0, 1.0, 0.5, 0.01)
 
     monkeypatch.setattr(reduction, "measure", fake)
     store, path = tmp_path / "results" / "kept.json", FOLDER / "pipe.yaml"

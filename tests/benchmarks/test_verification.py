@@ -3,7 +3,7 @@
 import pytest
 
 import mpm
-from mpm.benchmarks.verification import FOLDER, Line, measure, refinement
+from mpm.benchmarks.verification import FOLDER, ProblemRow, measure, refinement
 
 
 @pytest.mark.parametrize(
@@ -18,10 +18,10 @@ def test_what_is_refined(name, path, values):
 
 
 def test_order_is_fitted_where_one_is_declared():
-    line = Line("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (0.16, 0.04, 0.01), 1.8, 1.0)
+    line = ProblemRow("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (0.16, 0.04, 0.01), 1.8, 1.0)
     assert line.order() == pytest.approx(2.0)
     assert "| 0.16, 0.04, 0.01 | 2.00 | 1.80 |" in line.text()
-    assert Line("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (1e-15, 0.0, 1e-15), None, 1.0).order() is None
+    assert ProblemRow("it", "apic", "grid.cell", (0.4, 0.2, 0.1), "error_l2", (1e-15, 0.0, 1e-15), None, 1.0).order() is None
 
 
 def test_a_line_of_a_material_point():
