@@ -132,7 +132,7 @@ def coefficients(body: RigidBody, shaped: Geometry, conductivity: float, h: floa
 def convection(
     body: RigidBody, shaped: Geometry, betas: list[float], zero: float, conductivity: float | None, moment: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list]:
-    """(stencil of sum beta B, sum beta int N, heat from surroundings that stay [W], what follows surroundings that change). conductivity: of hats, else None."""
+    """(stencil of sum beta B, sum beta int N, heat from surroundings that stay [W], what changes). conductivity: of hats, else None."""
     exchange, facing, steady, forcing = np.zeros_like(shaped.mass), np.zeros(shaped.nodes.size), np.zeros(shaped.nodes.size), []
     for k, ((_, _, outside), beta, stencil, area) in enumerate(zip(body.surfaces, betas, shaped.exchange, shaped.area, strict=False)):
         if beta == 0:
