@@ -106,10 +106,10 @@ def command_code(arguments: list[str]) -> int:
         warn("stopped")
         return 130
     except Exception as error:
-        return told(error)
+        return exit_code(error)
 
 
-def told(error: Exception) -> int:
+def exit_code(error: Exception) -> int:
     """An exception in words, and its exit code."""
     from mpm.sweep.executors import BrokenWorkers
     from mpm.sweep.store import Refused

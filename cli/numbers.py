@@ -44,10 +44,10 @@ def row(name: str, value: float, experiment: Any) -> tuple[str, str, str]:
     from mpm.records.variables import describe
 
     found = describe(name, experiment.grid.dimension, experiment.output.probes)
-    return words.title_case(words.short(found.long_name)), said(value, found.units, words.is_temperature(name)), name
+    return words.title_case(words.short(found.long_name)), value_in_words(value, found.units, words.is_temperature(name)), name
 
 
-def said(value: float, units: str, temperature: bool) -> str:
+def value_in_words(value: float, units: str, temperature: bool) -> str:
     """`31.30 °C (304.45 K)`, `8.139 mm`, `11.5 min (688 s)`, `not reached`."""
     from mpm.plots import words
 

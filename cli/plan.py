@@ -24,16 +24,16 @@ def plan(
     smaller models and what they would save, and estimates of time, memory and output. With --tol it runs coarse pilots: they measure the error of
     smaller models and choose basis, transfer, cell, particles and step (the method from the results of mpm chart, the cell from the pilots).
     """
-    from mpm.sweep.plan_report import outlook, said
+    from mpm.sweep.plan_report import in_words, outlook
 
     experiment = load(config, set_, smoke)
     found = outlook(experiment, out, jobs, rerun, max_runs, tol, hear)
-    words = said(found)
+    words = in_words(found)
     if tol is not None:
-        from mpm.study.choose import offer, told
+        from mpm.study.choose import offer, settings_in_words
 
         found["settings"] = offer(experiment, tol, hear)
-        words += "\n" + told(found["settings"])
+        words += "\n" + settings_in_words(found["settings"])
     document(found) if as_json else say(words)
 
 

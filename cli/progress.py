@@ -25,7 +25,7 @@ def reporter(as_json: bool, quiet: bool) -> Reporter:
     return Plain(stream) if plain else Bar(stream)
 
 
-def told(label: str, line: dict, again: bool) -> str:
+def finished_line(label: str, line: dict, again: bool) -> str:
     """A finished point in a line."""
     name = label or "the point"
     if line["status"] == 0:
@@ -56,7 +56,7 @@ class Plain(Reporter):
         """A line a point, or a failed point."""
         self.done += not again
         if not self.failures_only or line["status"] != 0:
-            self.write((f"[{self.done}/{self.total}] " if self.total else "") + told(label, line, again))
+            self.write((f"[{self.done}/{self.total}] " if self.total else "") + finished_line(label, line, again))
 
     def compiling(self, text: str, expected: float) -> None:
         """Said once of each kernel that takes long; `expected` in seconds."""
@@ -105,7 +105,7 @@ class Bar(Reporter):
         self.ran += not again
         if line["status"] != 0:
             self.failed += not again
-            self.say(told(label, line, again))
+            self.say(finished_line(label, line, again))
         self.progress.update(self.task, completed=self.done)
 
     def compiling(self, text: str, expected: float) -> None:

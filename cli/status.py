@@ -9,8 +9,8 @@ def status(out: Folder, as_json: Json = False) -> None:
 
     Counts by status, failures grouped by reason, the slowest points, results from other source code, and the process that is working there.
     """
-    from mpm.sweep.status import said
+    from mpm.sweep.status import in_words
     from mpm.sweep.status import status as status_of
 
     found = status_of(out)
-    document(found) if as_json else say(said(found))
+    document(found) if as_json else say(in_words(found))

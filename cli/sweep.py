@@ -151,9 +151,9 @@ def summary(result: Any, picture: Any) -> dict[str, Any]:
 
 def words(result: Any, picture: Any, command: str) -> list[str]:
     """The same for people; `command` goes on with what is left."""
-    from mpm.sweep.queue import told as counts_told
+    from mpm.sweep.queue import counts_in_words
 
-    told = [f"{counts_told(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
+    told = [f"{counts_in_words(result.counts, result.warned)}; {result.ran} run now, {result.seconds:.1f} s"]
     told += [str(path) for path in (result.out / "sweep.nc", picture) if path is not None and path.exists()]
     if result.hurried and not result.collected and result.ran:
         told.append(f"Stopped before the dataset was updated; run `mpm collect {result.out}` (the next sweep also updates it).")

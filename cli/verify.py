@@ -17,7 +17,7 @@ def verify(out: Folder, check: Check = False, jobs: Jobs = "auto", as_json: Json
     Exit codes: 0 all files are sound, or have been repaired; 1 something is still damaged; 2 usage, or the folder is in use.
     """
     from mpm.sweep.engine import Options
-    from mpm.sweep.verify import said
+    from mpm.sweep.verify import in_words
     from mpm.sweep.verify import verify as verified
 
     teller = reporter(as_json, quiet)
@@ -25,5 +25,5 @@ def verify(out: Folder, check: Check = False, jobs: Jobs = "auto", as_json: Json
     if as_json:
         document(found.document())
     else:
-        say(said(found), quiet=quiet and found.sound)
+        say(in_words(found), quiet=quiet and found.sound)
     raise typer.Exit(0 if found.sound else 1)

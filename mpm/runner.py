@@ -136,7 +136,7 @@ def run_named(experiment, beat=None, compare: bool = True, threads: int = 1, kee
             run.facts["threads_idle"] = f"one thread did all: more help from {SHARED} moving particles on, in two or three dimensions"
     run.wall_time = max(0.0, run.wall_time - (compiling.seconds() - before))
     compiling.remember(experiment, again=compiling.seconds() > before)
-    return told(experiment, run)
+    return with_facts(experiment, run)
 
 
 def whole(run: Run, dimension) -> Run:
@@ -154,10 +154,10 @@ def run_points(experiments) -> list[Run]:
     from mpm.verification import exact_solution
 
     runs = batch(experiments, [exact_solution(experiment) for experiment in experiments])
-    return [told(experiment, run) for experiment, run in zip(experiments, runs, strict=True)]
+    return [with_facts(experiment, run) for experiment, run in zip(experiments, runs, strict=True)]
 
 
-def told(experiment, run: Run) -> Run:
+def with_facts(experiment, run: Run) -> Run:
     """The run, with its physics, its warnings, and how far it is from what was measured."""
     run.facts["physics"] = physics(experiment)
     run.facts["warnings"] = [*run.facts.get("warnings", ()), *review(experiment, run)]

@@ -51,6 +51,7 @@ SOLVERS = [("moving", 1, EVERYWHERE | MOVING), ("cold", 1, MOVING), ("rigid", "a
 
 
 @pytest.mark.parametrize("solver, dimension, least", SOLVERS)
+@pytest.mark.plain
 def test_what_is_accepted_is_answered(core, solver, dimension, least):
     data, probe = base(core, solver, dimension) if solver != "point" else (point(), [])
     observables = [name for name in OBSERVABLES if accepted(data, {"observables": [name]})]

@@ -138,6 +138,7 @@ def test_energy_from_nowhere_ends_a_run(core):
 
 
 @pytest.mark.parametrize("transfer", ["apic", "flip"])
+@pytest.mark.plain
 def test_a_swing_gains_nothing(monkeypatch, transfer):
     """A bar of 8 cells at the automatic step, seen every tenth of a second: velocities and positions of one time. Half a step apart they seem to gain 2.5 %."""
     gains, frame = [], Guards.frame

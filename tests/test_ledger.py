@@ -31,6 +31,7 @@ def test_expansion_and_what_it_heats(core):
     assert np.abs(run.series["energy_ledger"] + run.series["dissipation_transfer"] - run.series["heat_ledger"]).max() < 1e-12 * run.series["heat_total"].max()
 
 
+@pytest.mark.plain
 def test_flow(core):
     """A bar that swings past its yield stress: what flow dissipates is what is missing."""
     flow = {"ellipse": {"M": 0.05, "p0": 1.0, "eta": 1.0}}
@@ -55,6 +56,7 @@ def test_moduli_that_follow_temperature(core):
     assert np.abs(run.series["dissipation_transfer"]).max() < 0.03 * stored.max()
 
 
+@pytest.mark.plain
 def test_what_apic_takes(core):
     """A bar that swings in waves of eight cells: nothing but the transfer takes its energy, affine FLIP least."""
 
@@ -72,6 +74,7 @@ def test_what_apic_takes(core):
     assert abs(took["affine_flip"]) < 0.1 and took["apic"] > 0.3
 
 
+@pytest.mark.plain
 def test_loads_in_the_total_frame(core):
     """Pulled slowly to rest, the bar stores what traction and drag worked on it: M e^2/2 of its volume, with e/exp(e) = T/M."""
     bodies = {"body": {"shape": {"box": {"lower": [0], "upper": [1.07]}}, "material": "solid"}}

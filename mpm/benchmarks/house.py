@@ -76,10 +76,10 @@ def measure(folder: Path) -> dict[str, str]:
         if isinstance(node, (*FUNCTIONS, ast.ClassDef)) and not node.name.startswith("_")
         if not any("register" in ast.unparse(decorator) for decorator in node.decorator_list)
     ]
-    rows = {"modules": f"{len(trees)}", "lines of a module, median; largest": f"{statistics.median(lines.values()):.0f}; {told(lines)}"}
+    rows = {"modules": f"{len(trees)}", "lines of a module, median; largest": f"{statistics.median(lines.values()):.0f}; {largest(lines)}"}
     for what, size, many in (("lines", lambda node: node.end_lineno - node.lineno + 1, 60), ("arguments", arguments, 10), ("complexity", complexity, 10)):
         sizes = {name: size(node) for name, node in functions}
-        rows[f"{what} of a function, 95 %; largest"] = f"{sorted(sizes.values())[int(0.95 * len(sizes))]}; {told(sizes)}"
+        rows[f"{what} of a function, 95 %; largest"] = f"{sorted(sizes.values())[int(0.95 * len(sizes))]}; {largest(sizes)}"
         rows[f"functions with more than {many} {what}"] = f"{sum(count > many for count in sizes.values())}"
     rows["functions called _"] = f"{sum(node.name == '_' for _, node in functions)} of {len(functions)}"
     found = circles({name: imported(tree, set(trees)) - {name} for name, tree in trees.items()})
@@ -90,7 +90,7 @@ def measure(folder: Path) -> dict[str, str]:
     return rows
 
 
-def told(sizes: dict[str, int]) -> str:
+def largest(sizes: dict[str, int]) -> str:
     name = max(sizes, key=lambda one: sizes[one])
     return f"{sizes[name]} ({name.removeprefix('mpm.')})"
 

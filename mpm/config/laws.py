@@ -117,7 +117,7 @@ def of_unit(base: type[Kind], quantity: Quantity, home: dict[str, Any], /, **fie
     return made
 
 
-def said(base: type[Kind], field: str) -> Any:
+def described_as(base: type[Kind], field: str) -> Any:
     """A required field that is described as in the base."""
     return doc(description=base.model_fields[field].description)
 
@@ -127,7 +127,7 @@ def fields_of(base: Any, value: Any, area: Any) -> Any:
     for name in (*base.values, *getattr(base, "areas", ())):
         one = value if name in base.values else area
         several = base.model_fields[name].annotation is not float
-        yield name, (tuple[one, ...] if several else one, said(base, name))  # type: ignore[valid-type]  # a type of pydantic's, made here
+        yield name, (tuple[one, ...] if several else one, described_as(base, name))  # type: ignore[valid-type]  # a type of pydantic's, made here
 
 
 class Law(Menu):

@@ -18,7 +18,7 @@ def series(met, axes: tuple[str, ...], since: float, time: float):
         at = k if tool is None else BODY + B + k - len(met.sides)
         if tool is None and not (met.stops.reshape(B, 6)[:, k] >= 0).any():
             continue
-        yield from told(side or tool, axes, part * touching.pushed[:, at].sum(axis=0), part * touching.turned[:, at].sum(axis=0),
+        yield from obstacle_series(side or tool, axes, part * touching.pushed[:, at].sum(axis=0), part * touching.turned[:, at].sum(axis=0),
                         part * touching.spread[:, at].sum())  # fmt: skip
         if tool is not None:
             moved = met.drive.displacement(met.tool_names.index(tool), time)
@@ -28,14 +28,14 @@ def series(met, axes: tuple[str, ...], since: float, time: float):
             both = f"{met.names[a]}_{met.names[b]}"
             if met.pairs[a, b] >= 0:
                 area = 0.5 * part * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
-                yield from told(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
+                yield from obstacle_series(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
             if met.passing[a, b]:
                 yield f"heat_{both}", met.passed[a, b]
     for gathered in (touching.pushed, touching.turned, touching.spread, touching.deepest):
         gathered[:] = 0.0
 
 
-def told(name: str, axes, force, torque, area):
+def obstacle_series(name: str, axes, force, torque, area):
     """The series of one obstacle. There is a torque in a plane and in space; about the axis of a round body there is none."""
     for k, axis in enumerate(axes):
         yield f"force_{name}_{axis}", force[k]

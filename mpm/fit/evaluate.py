@@ -44,7 +44,7 @@ class Evaluator:
     def number(self, u: np.ndarray) -> np.ndarray:
         """r at a point that has one; NoDerivative where it failed after all."""
         if (r := self.residuals([u])[0]) is None:
-            raise NoDerivative(f"no residuals at {said(self.problem, u)}: the point failed")
+            raise NoDerivative(f"no residuals at {values_in_words(self.problem, u)}: the point failed")
         return r
 
     def differences(self, u: np.ndarray) -> list[tuple[np.ndarray, float]]:
@@ -62,7 +62,7 @@ class Evaluator:
             if len(found) == len(u):
                 return [found[k] for k in range(len(u))]
         name = next(parameter.name for k, parameter in enumerate(self.problem.parameters) if k not in found)
-        raise NoDerivative(f"no derivative by {name} at {said(self.problem, u)}: the points on both sides failed")
+        raise NoDerivative(f"no derivative by {name} at {values_in_words(self.problem, u)}: the points on both sides failed")
 
     def jacobian(self, u: np.ndarray) -> np.ndarray:
         """dr/du, shape (values, parameters)."""
@@ -77,6 +77,6 @@ class Evaluator:
         return np.stack([(one - base) / h for one, (_, h) in zip(moved, beside, strict=True)], axis=1)
 
 
-def said(problem: Problem, u: np.ndarray) -> str:
+def values_in_words(problem: Problem, u: np.ndarray) -> str:
     """`kappa = 0.35, beta = 13.1`."""
     return ", ".join(f"{name} = {value:.4g}" for name, value in zip(problem.names, problem.values(u), strict=True))

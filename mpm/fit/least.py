@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mpm.fit.evaluate import Evaluator, NoDerivative, said
+from mpm.fit.evaluate import Evaluator, NoDerivative, values_in_words
 from mpm.sweep.designs import unit_sample
 
 TOLERANCE, OF_STEP = 1e-8, 1e-2  # of u and of the sum of squares; of u where `step` says that the answer is rough, as a share of that step
@@ -77,7 +77,7 @@ def search(evaluator: Evaluator, told: Callable[[str], None] = lambda _: None) -
         except NoDerivative as error:
             notes.append(f"start {number} ended: {error}")
             continue
-        told(f"start {number} of {len(good)}: {said(problem, found[-1].u)}, sum of squares {2 * found[-1].cost:.4g}, {found[-1].evaluations} steps")
+        told(f"start {number} of {len(good)}: {values_in_words(problem, found[-1].u)}, sum of squares {2 * found[-1].cost:.4g}, {found[-1].evaluations} steps")
     if not found:
         raise NoFit("; ".join(notes))
     return Searches(sorted(found, key=lambda one: one.cost), [note for note in notes if note])
@@ -96,7 +96,7 @@ def one(evaluator: Evaluator, start: np.ndarray) -> Search:
 
     inside = np.clip(start, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
     if evaluator.residuals([inside])[0] is None:
-        raise NoDerivative(f"{said(evaluator.problem, inside)} could not be computed")
+        raise NoDerivative(f"{values_in_words(evaluator.problem, inside)} could not be computed")
     near = max(TOLERANCE, OF_STEP * evaluator.problem.step) if evaluator.problem.step > USUAL else TOLERANCE
     done = least_squares(residuals, inside, evaluator.jacobian, (low, high), x_scale="jac", max_nfev=MOST_EVALUATIONS, xtol=near, ftol=TOLERANCE, gtol=None)
     return Search(start, done.x, float(done.cost), done.status > 0, done.message.rstrip("."), int(done.nfev))

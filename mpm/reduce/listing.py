@@ -58,7 +58,7 @@ def chosen(experiment: Any, tolerance: float | None, run: Callable | None) -> di
     return {"tolerance": tolerance, "name": named(chain), "predicted": predicted, "seconds": estimate(last)["seconds"]}
 
 
-def said(found: dict[str, Any]) -> list[str]:
+def models_in_words(found: dict[str, Any]) -> list[str]:
     """The same in words, a line each."""
     if found["none"]:
         return [f"smaller   none: {found['none']}"]

@@ -26,10 +26,10 @@ def studies(folder: Path) -> Iterator[dict[str, Any]]:
             continue
         with xarray.open_datatree(path, engine="h5netcdf") as tree:
             found = tree.load()
-        yield {"name": name, "title": title, "alt": alt, "sentences": said(found.attrs), "figure": figure(found), "tables": tables(found.to_dataset())}
+        yield {"name": name, "title": title, "alt": alt, "sentences": sentences_of(found.attrs), "figure": figure(found), "tables": tables(found.to_dataset())}
 
 
-def said(attrs: dict[Any, Any]) -> list[str]:
+def sentences_of(attrs: dict[Any, Any]) -> list[str]:
     """The answer in words, as the command printed it."""
     told = attrs.get("sentences", attrs.get("answer", ""))
     if isinstance(told, str):

@@ -101,7 +101,7 @@ def beyond(part: Part) -> list[float]:
     return [float(over / span) if over > 1e-9 * system.hottest else 0.0 for over in worst]
 
 
-def told(part: Part, shown: int, reference: float) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:
+def series_of(part: Part, shown: int, reference: float) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:
     """Series of each body of a group, and the heat that passed through each of its joints."""
     n, zero = len(part.members), part.system.zero
     joints = getattr(part.system, "joints", ())
@@ -132,7 +132,7 @@ def gather(parts: list[Part], number: int, snapshots, times, names, thresholds, 
         seen = np.array(trace.probes).reshape(len(trace.heat), len(part.mine))[:shown] + part.system.zero
         for column, k in enumerate(part.mine):
             series[f"temperature.{names[k]}"] = seen[:, column]
-        each, flows = told(part, shown, reference)
+        each, flows = series_of(part, shown, reference)
         for member, one, system, seat in zip(part.members, each, part.systems(), part.seats, strict=True):
             of[member], bodies[member] = one, (part.system, part.method, trace.final, seat)
             for name in ("heat", "heat_exchanged", "heat_ledger"):

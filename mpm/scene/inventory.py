@@ -29,13 +29,13 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {f"source: {kind}" for kind in SOURCES for entry in experiment.sources if getattr(entry, kind) is not None}
     steady = all(isinstance(one, float) for one in experiment.gravity or ())
     present |= {"gravity" if steady else "gravity: over time"} if experiment.gravity is not None else set()
-    present |= set(pairs(experiment)) | {f"tool: {name}, {told(tool)}" for name, tool in experiment.tools.items()}
+    present |= set(pairs(experiment)) | {f"tool: {name}, {tool_in_words(tool)}" for name, tool in experiment.tools.items()}
     said = {text.split(":")[0] for text in present}
     parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "source", "load", "gravity")
     return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
 
 
-def told(tool) -> str:
+def tool_in_words(tool) -> str:
     """How a tool moves."""
     motion = tool.motion
     ways = [key for key in ("velocity", "path", "force", "spin") if getattr(motion, key) is not None]

@@ -114,12 +114,12 @@ def bench(options: Options) -> dict:
         run(options.steps)
         blocks.append((time.perf_counter() - began) / options.steps)
     threads = options.threads if scene.order.shared else 1
-    found = {"first_s": round(first, 3), "threads": threads} | told(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
+    found = {"first_s": round(first, 3), "threads": threads} | figures_of(options, scene.bodies[0].particles, np.array(blocks), EDGE * h)
     flops, peak = operations(scene), gflops(scene.bodies[0].particles.x.dtype) * threads
     return found | {"flops": flops, "peak_gflops": round(peak, 1), "fma_share": round(flops * found["Mpps_med"] / 1e3 / peak, 3)}
 
 
-def told(options: Options, particles: Any, blocks: np.ndarray, shift: float) -> dict:
+def figures_of(options: Options, particles: Any, blocks: np.ndarray, shift: float) -> dict:
     """Times and the check of a finished run."""
     N, x, v = len(particles.m), particles.x.astype(float) + shift, particles.v.astype(float)
     state = sum(array.nbytes for array in particles)

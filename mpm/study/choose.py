@@ -1,6 +1,6 @@
 """Method, cell and step for a tolerance (`mpm plan --tol 1%`): the method from the charted fronts, the cell from pilot runs of the user's own scene.
 
-    choose(experiment, tolerance) -> Choice      offer, told: the same for `mpm plan`
+    choose(experiment, tolerance) -> Choice      offer, settings_in_words: the same for `mpm plan`
 
 1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json: `python -m mpm.benchmarks.figures`).
    Of the numerical methods in them, at the automatic step, the one that reaches the tolerance in the least time, over all of those charts, is taken.
@@ -123,7 +123,7 @@ def offer(experiment: Any, tolerance: float, heard: Callable[[str], None] = sile
     return {"tolerance": tolerance, "swept": experiment.sweep is not None, **asdict(found)}
 
 
-def told(found: dict[str, Any]) -> str:
+def settings_in_words(found: dict[str, Any]) -> str:
     """The same in words, ready to be pasted behind a command."""
     if "none" in found:
         return f"settings  none for {100 * found['tolerance']:g} %: {found['none']}"

@@ -109,18 +109,18 @@ def compare(revision: str, rounds: int = 5, only: str = "") -> Iterator[dict]:
 
 def cold(here: Path, there: Path, folder: Path) -> dict:
     """The first run on an empty cache, of both."""
-    return told(COLD, [[timed(place, COLD, Path(tempfile.mkdtemp(dir=folder)))] for place in (here, there)])
+    return ratio_row(COLD, [[timed(place, COLD, Path(tempfile.mkdtemp(dir=folder)))] for place in (here, there)])
 
 
 def in_turn(row: str, here: Path, there: Path, rounds: int) -> dict:
     """A row here and there by turns, once before to compile."""
     first = [timed(place, row) for place in (here, there)]  # compiles
     if any("failed" in one for one in first):
-        return told(row, [[one] for one in first])
-    return told(row, list(zip(*([timed(place, row) for place in (here, there)] for _ in range(rounds)), strict=True)))
+        return ratio_row(row, [[one] for one in first])
+    return ratio_row(row, list(zip(*([timed(place, row) for place in (here, there)] for _ in range(rounds)), strict=True)))
 
 
-def told(row: str, found: list[Any]) -> dict:
+def ratio_row(row: str, found: list[Any]) -> dict:
     """A row of the table: medians, and the median and range of the ratio; `note` where one failed or they did other work."""
     ours, theirs = found
     for name, one in (("here", ours[0]), ("there", theirs[0])):

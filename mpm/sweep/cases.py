@@ -113,7 +113,7 @@ class Points:
             try:
                 value = one.formula(given)
             except ConditionError as error:
-                self.found.append(Finding(("sweep", "derive", one.parameter.name), str(error), "", given=said(given)))
+                self.found.append(Finding(("sweep", "derive", one.parameter.name), str(error), "", given=values_in_words(given)))
                 return None
             pairs.append((one.parameter, int(value) if one.parameter.slot.quantity is None and float(value).is_integer() else value))
         return pairs
@@ -157,7 +157,7 @@ class Points:
         try:
             return not condition(values)
         except ConditionError as error:
-            self.found.append(Finding(("sweep", "where"), str(error), "", given=said(values)))
+            self.found.append(Finding(("sweep", "where"), str(error), "", given=values_in_words(values)))
             return True
 
     def data(self, pairs: list[tuple[Parameter, Any]]) -> Any:
@@ -235,6 +235,6 @@ def labels(values: list[Any]) -> list[str]:
     return short if len(set(short)) == len(set(whole)) else whole
 
 
-def said(values: dict[str, Any]) -> str:
+def values_in_words(values: dict[str, Any]) -> str:
     """`kappa = 0.3, beta = 5`."""
     return ", ".join(f"{key} = {label(value)}" for key, value in values.items())

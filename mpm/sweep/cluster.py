@@ -126,7 +126,7 @@ class Cluster:
             message, files = what.result()
             return [self.land(name, message, files)]
         if what.status == "error":
-            return [self.drop(name, f"the worker gave up: {said(what)}")]
+            return [self.drop(name, f"the worker gave up: {error_line(what)}")]
         return []  # cancelled: its worker or the scheduler is gone, as the next look will show
 
     def land(self, name: str, message: dict, files: dict[str, bytes]) -> Event:
@@ -206,7 +206,7 @@ class Cluster:
             return []
         if future.status == "cancelled":
             return []
-        why = f"its mpm is of other source ({source}, here {source_hash()})" if source else said(future)
+        why = f"its mpm is of other source ({source}, here {source_hash()})" if source else error_line(future)
         self.refused[worker] = why
         return [Note(f"worker {worker} is not used: {why}")]
 
@@ -274,7 +274,7 @@ def host(worker: str) -> str:
     return worker.partition("://")[2].rpartition(":")[0]
 
 
-def said(future: Any) -> str:
+def error_line(future: Any) -> str:
     """What went wrong on a worker, in a line."""
     error = future.exception()
     return f"{type(error).__name__}: {(str(error).strip().splitlines() or ['no message'])[0][:300]}"

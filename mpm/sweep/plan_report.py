@@ -103,7 +103,7 @@ def plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
-def said(found: dict[str, Any]) -> str:
+def in_words(found: dict[str, Any]) -> str:
     """The same in words."""
     told = [f"{found['name']}: {found['title']}" if found["title"] else found["name"]]
     told.append(f"points    {found['points']}" + (f" ({found['skipped']} dropped by where)" if found["skipped"] else ""))
@@ -126,9 +126,9 @@ def said(found: dict[str, Any]) -> str:
             told.append(f"{name:<9} {said_value(value)}")
     told += said_groups(found["groups"])
     if found["smaller"]:
-        from mpm.reduce.listing import said as said_smaller
+        from mpm.reduce.listing import models_in_words
 
-        told += said_smaller(found["smaller"])
+        told += models_in_words(found["smaller"])
     if "seconds" in cost:
         told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
         if found["compiling_seconds"]:

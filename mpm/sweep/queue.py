@@ -137,7 +137,7 @@ def count_each(codes: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.nda
     return used, np.bincount(place, weights=times, minlength=len(used))
 
 
-def told(found: dict[str, int], warnings: dict[str, int]) -> str:
+def counts_in_words(found: dict[str, int], warnings: dict[str, int]) -> str:
     """Counts in words: `32 ok, 9 of them with warnings: volume 7, temperature 4`."""
     parts = [f"{count} {name}" for name, count in found.items() if count]
     if warnings:

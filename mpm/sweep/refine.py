@@ -171,7 +171,7 @@ def refine(experiment: Any, out: Path, options: Options, reporter: Reporter) -> 
         try:
             while wanted:
                 records = rounds.run([mesh.value(place) for place in wanted])
-                mesh.known |= {place: answer(record, name) for place, record in zip(wanted, records, strict=True)}
+                mesh.known |= {place: final_of(record, name) for place, record in zip(wanted, records, strict=True)}
                 for cell in pending:
                     mesh.split(cell)
                 wanted, pending = choose(mesh)
@@ -208,7 +208,7 @@ def choose(mesh: Mesh) -> tuple[list[Place], list[Cell]]:
             mesh.split(cell)
 
 
-def answer(record: Any, name: str) -> float:
+def final_of(record: Any, name: str) -> float:
     """What a point tells; NaN where it is not ok or not reached."""
     if record.status != OK:
         return math.nan

@@ -12,7 +12,7 @@ from mpm.records.variables import STATUS
 from mpm.sweep.api import folder_plan
 from mpm.sweep.case_list import skipped
 from mpm.sweep.lock import owner, said_owner
-from mpm.sweep.queue import counts, stale, told, warned
+from mpm.sweep.queue import counts, counts_in_words, stale, warned
 from mpm.sweep.report import label
 from mpm.warned import KINDS
 
@@ -73,9 +73,11 @@ def reason(line: dict) -> str:
     return text[:cut].rstrip(" (=,") or text
 
 
-def said(found: dict[str, Any]) -> str:
+def in_words(found: dict[str, Any]) -> str:
     """The same in words."""
-    words = [f"{found['out']}: {found['name']}, {found['points']} point{'s' if found['points'] != 1 else ''}: {told(found['counts'], found['warnings'])}"]
+    words = [
+        f"{found['out']}: {found['name']}, {found['points']} point{'s' if found['points'] != 1 else ''}: {counts_in_words(found['counts'], found['warnings'])}"
+    ]
     for row in found["warned"]:
         words.append(f"  {row['count']} x warning: {row['kind']}, as {row['example'] or 'the point'}; {row['advice']}")
     for failure in found["failures"]:

@@ -40,7 +40,7 @@ class Summaries(MutableMapping):
             count = (datetime.fromisoformat(text) - START) // MILLISECOND
         except (ValueError, TypeError):
             return -1 - self.code(text)
-        return count if count >= 0 and said(count) == text else -1 - self.code(text)
+        return count if count >= 0 and timestamp(count) == text else -1 - self.code(text)
 
     def __setitem__(self, run_id: str, line: dict[str, Any]) -> None:
         number = self.ids.find(run_id)
@@ -76,7 +76,7 @@ class Summaries(MutableMapping):
         for name in TEXTS:
             found[name] = self.texts[found[name]]
         for name in TIMES:
-            found[name] = said(found[name]) if found[name] >= 0 else self.texts[-1 - found[name]]
+            found[name] = timestamp(found[name]) if found[name] >= 0 else self.texts[-1 - found[name]]
         return tuple(found.values())
 
     def __delitem__(self, run_id: str) -> None:
@@ -115,6 +115,6 @@ class Summaries(MutableMapping):
         return np.flatnonzero(self.rows["there"] & ((self.rows["status"] == 0) == ok))
 
 
-def said(milliseconds: int) -> str:
+def timestamp(milliseconds: int) -> str:
     """As records.provenance.now says it."""
     return (START + milliseconds * MILLISECOND).isoformat(timespec="milliseconds")

@@ -153,7 +153,7 @@ def aside(out: Path, one: dict) -> None:
     one["aside"] = str(set_aside(out / one["file"]).relative_to(out))
 
 
-def said(found: Found) -> str:
+def in_words(found: Found) -> str:
     """The same in words."""
     state = f"{len(found.damaged)} damaged" if found.damaged else "all as they were written"
     told = [f"{found.out}: {found.files} files, {found.bytes / 1e6:.3g} MB: {state}"]

@@ -110,11 +110,11 @@ def compute(
     except Unwritten:
         raise
     except Exception as error:
-        text = f"{variables.STATUS[variables.FAILED]}: {told(error)}"
+        text = f"{variables.STATUS[variables.FAILED]}: {error_in_words(error)}"
         return point.Record(run_id, variables.FAILED, text, wall_time=time.perf_counter() - began, finished=now(), **calls)
 
 
-def told(error: Exception) -> str:
+def error_in_words(error: Exception) -> str:
     """What cannot be run says what to change; anything else is told with its type and place."""
     from mpm.scene.refusal import SceneError
 

@@ -15,6 +15,7 @@ def test_a_row():
 
 
 @pytest.mark.parametrize("name", ["hencky_bar", "hydrostatic_column"])
+@pytest.mark.plain
 def test_one_direction(name):
     assert measure(FOLDER / f"{name}.yaml", 1).holds()
 

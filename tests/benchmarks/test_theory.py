@@ -7,6 +7,7 @@ from mpm.benchmarks.theory import fake_conductivity, kept, loss, strained
 
 
 @pytest.mark.parametrize("dt", [1e-5, 1e-3, 1e-1])
+@pytest.mark.plain
 def test_pic_temperatures_conduct_by_themselves(dt):
     """R0 alpha h^2/(4 dt) within 5 %, over four decades of the step (measured: 0.03 %)."""
     measured, theory = fake_conductivity(dt)

@@ -49,12 +49,12 @@ def test_points_of_a_sweep_too(loaf):
 
 def test_a_point_that_needs_more_memory_than_is_free_is_planned_without_being_made(block, tmp_path, monkeypatch):
     from mpm.sweep import resources
-    from mpm.sweep.plan_report import outlook, said
+    from mpm.sweep.plan_report import in_words, outlook
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(resources, "available", lambda: 1e9)
     experiment = load(block, {"grid.cell": "20 um"})
     found = outlook(experiment, None, 1)
-    words = said(found)
+    words = in_words(found)
     assert "of memory, and 1 GB are free: neither steps nor seconds are estimated" in words and found["seconds"] is None and found["smaller"] is None
     assert 3e9 < found["memory_bytes"] < 10e9  # 16 million particles of some 376 bytes

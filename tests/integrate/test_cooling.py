@@ -57,6 +57,7 @@ def test_a_thin_body_cools_exponentially(core, dimension):
     assert (run.series["temperature_mean"][-1] - core.COLD) / 100 == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.plain
 def test_a_thin_body_follows_air_that_warms_within_a_heat_step(core):
     """T' = -k (T - To - r t): air that is held where a heat step begins would lag by half of a step of 2 s, 3 K at the end here."""
     r, k = 20.0, 0.02 * 2 / 0.75 / (2.0 * 1.5)

@@ -45,6 +45,7 @@ def relaxed(space, field, share=0.02):
 
 
 @pytest.mark.parametrize("space", SPACES, ids=lambda space: type(space).__name__)
+@pytest.mark.plain
 def test_uniform_change_stays_and_others_are_averaged(space):
     D = directions(space)
     slope = np.random.default_rng(2).standard_normal((D, D))
@@ -88,6 +89,7 @@ def test_nearly_incompressible_block(core):
 
 
 @pytest.mark.parametrize("share", [0.02, 1.0])
+@pytest.mark.plain
 def test_a_share_of_its_own_change_stays_with_the_particle(share):
     """What the average does not see, velocities + - + - on the nodes, is felt by that share."""
     for space in SPACES[:2]:

@@ -114,8 +114,8 @@ def test_the_estimate_of_unevenness_is_above_what_a_run_shows(beta):
 
 
 def test_plan_tells_the_groups():
-    from mpm.sweep.plan_report import outlook, said
+    from mpm.sweep.plan_report import in_words, outlook
 
     told = outlook(mpm.load(SLAB), None, 1)
     assert [group["name"] for group in told["groups"]] == ["Biot", "Fourier"]
-    assert "beta V/(S kappa): the inside keeps one temperature; could drop the inside" in said(told)
+    assert "beta V/(S kappa): the inside keeps one temperature; could drop the inside" in in_words(told)

@@ -9,7 +9,7 @@ from beams import TIP, beam
 import mpm
 from mpm.benchmarks.figures import STUDIES
 from mpm.benchmarks.promises import PROBLEMS, rivals
-from mpm.study.choose import choose, numerical, offer, physics, rank, reach, told
+from mpm.study.choose import choose, numerical, offer, physics, rank, reach, settings_in_words
 from mpm.study.pilots import NoChoice, grids, left, refine, settled
 
 SLAB = {
@@ -136,8 +136,8 @@ def test_pilots_are_told_of_and_go_on_where_an_error_falls_slowly(monkeypatch):
 def test_a_choice_for_a_sweep_says_whose_it_is():
     """With beta from 1 to infinity the slab's own 10 W/m2/K decides, and that is told."""
     swept = offer(mpm.load(SLAB | {"sweep": {"axes": {"beta": [1, float("inf")]}}}), 0.03)
-    assert "--set 'grid.cell=" in told(swept) and "not for each point of its sweep" in told(swept)
-    assert "sweep" not in told(offer(mpm.load(SLAB), 0.03))
+    assert "--set 'grid.cell=" in settings_in_words(swept) and "not for each point of its sweep" in settings_in_words(swept)
+    assert "sweep" not in settings_in_words(offer(mpm.load(SLAB), 0.03))
 
 
 def test_what_cannot_be_chosen_is_said():

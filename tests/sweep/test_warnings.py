@@ -8,8 +8,8 @@ from mpm.sweep import batch_size, engine
 from mpm.sweep.api import execute, folder_plan, run_one, tree_of
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
-from mpm.sweep.queue import told, warned
-from mpm.sweep.status import said, status
+from mpm.sweep.queue import counts_in_words, warned
+from mpm.sweep.status import in_words, status
 from mpm.warned import KINDS, flags, kinds
 
 TWO = {"points": 1, "volume": 1, "temperature": 1}
@@ -43,7 +43,7 @@ def test_they_are_counted_from_disk_and_named_by_status(config, tmp_path):
     assert again.ran == 0 and again.warned == TWO
     found = status(tmp_path)
     assert found["warnings"] == TWO and [row["kind"] for row in found["warned"]] == ["volume", "temperature"]
-    words = said(found)
+    words = in_words(found)
     assert "2 ok, 1 of them with warnings: volume 1, temperature 1; 1 diverged" in words and "1 x warning: volume, as kappa=10;" in words
 
 
@@ -60,6 +60,6 @@ def test_batches_and_dask_keep_them(config, tmp_path, monkeypatch):
 
 def test_words():
     counts = {"ok": 32, "failed": 0, "timeout": 0, "killed": 0, "diverged": 1, "skipped": 0, "pending": 0}
-    assert told(counts, {"points": 9, "temperature": 4, "volume": 7}) == "32 ok, 9 of them with warnings: volume 7, temperature 4; 1 diverged"
-    assert told(counts, {}) == "32 ok, 1 diverged"
+    assert counts_in_words(counts, {"points": 9, "temperature": 4, "volume": 7}) == "32 ok, 9 of them with warnings: volume 7, temperature 4; 1 diverged"
+    assert counts_in_words(counts, {}) == "32 ok, 1 diverged"
     assert kinds(["torn: a: b; c", "volume: x; y", "torn: z; w"]) == ("volume", "torn") and flags([]) == 0

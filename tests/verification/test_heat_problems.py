@@ -71,6 +71,7 @@ def gaussian_of_particles(cells, heat, steps):
     return [runs("gaussian_box", (cell,), **changes, **{"method.heat_step": step})[0].finals["error_l2"] for cell, step in zip(cells, steps, strict=True)]
 
 
+@pytest.mark.plain
 def test_gaussian_of_particles_is_of_order_one_in_the_step_and_two_in_the_cell(core):
     """Backward Euler: 1.08, 0.567, 0.302 K of 100; what the cell leaves, 0.033, is below a tenth of them."""
     assert core.order(gaussian_of_particles([1 / 64] * 3, {"implicit": {"order": 1}}, [0.004, 0.002, 0.001])) > 0.9

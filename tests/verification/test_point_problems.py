@@ -28,6 +28,7 @@ def order(errors):
     return -np.polyfit(np.arange(len(errors)) * math.log(2), np.log(errors), 1)[0]
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("step", [1.0, 0.01])
 def test_adiabat_in_any_step(step):
     table = rows("adiabatic.csv")
@@ -37,6 +38,7 @@ def test_adiabat_in_any_step(step):
         assert run.finals["J_min"] == pytest.approx(row["J"], rel=1e-14)
 
 
+@pytest.mark.plain
 def test_thermal_expansion_table():
     for row in rows("thermal_expansion.csv"):
         changes = {"lam": row["lambda"], "materials.solid.elastic.hencky.mu": row["mu"], "gamma": row["c_lambda"], "loading.0.temperature": 300 + row["dTheta"]}
@@ -53,6 +55,7 @@ def test_thermal_expansion_table():
         assert tau(line, "zz") == pytest.approx(row["uniaxial_tau_lateral"], rel=1e-12)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("model", ["E1", "E2"])
 def test_relaxation_table_at_order_one(model):
     table = [row for row in rows("relaxation.csv") if row["model"] == model]
@@ -99,6 +102,7 @@ def test_relaxation_solution_is_the_table():
             assert found["kirchhoff_q"][1] == pytest.approx(row["q/M"], rel=1e-10)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_configs_report_their_error(name):
     experiment = problem(name)
@@ -110,12 +114,14 @@ def test_configs_report_their_error(name):
         assert max(run.finals["error_max"] for run in runs) < 1e-9
 
 
+@pytest.mark.plain
 def test_shear_heating_by_hand():
     run = run_point(problem("shear_heating"))
     equivalent = math.sqrt(2 / 3 * (0.4**2 + 0.1**2 + 0.3**2))
     assert run.finals["temperature_mean"] - 300 == pytest.approx(2e4 * (equivalent - 2e4 / (3 * 1e6 / 2.6)) / 1e5, rel=1e-9)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("step", [1e-4, 1e-3, 0.1])
 def test_shear_heating_keeps_its_books(step):
     """Heat taken up, and dissipation turned to heat: the same to 1e-12, however many steps of a rise of 0.08 K on 300 K."""
@@ -124,12 +130,14 @@ def test_shear_heating_keeps_its_books(step):
     assert run.finals["heat_total"] == pytest.approx(run.finals["dissipation_total"], rel=1e-12)
 
 
+@pytest.mark.plain
 def test_lumped_time_to_a_temperature():
     run = run_point(problem("lumped_cooling", **{"time.step": 0.1}))
     assert run.finals["time_to_cube_60_degC"] == pytest.approx(math.log(2) * 8500 * 380 / (20 * 1200), rel=1e-6)
     assert np.array_equal(run.series["temperature_cube"], run.series["temperature_mean"])
 
 
+@pytest.mark.plain
 def test_lumped_body_with_latent_heat_is_of_order_two_and_keeps_its_heat():
     from scipy.integrate import solve_ivp
 
@@ -164,6 +172,7 @@ def test_rheometer_reads_its_parameters_back():
         assert found.eta == pytest.approx(flow.eta.value, rel=0.02)
 
 
+@pytest.mark.plain
 def test_rheometer_without_viscosity():
     run = run_point(mpm.load(ROOT / "configs" / "scenes" / "dough_rheometer.yaml", {"p0": 0.6, "eta": 0}))
     found = rheometer.read_run(run, hold=8.0)

@@ -71,6 +71,7 @@ def test_bodies_that_conduct_into_one_another():
     assert np.abs(cooled.series["heat_ledger"]).max() < 1e-12 * np.abs(cooled.series["heat_total"]).max()
 
 
+@pytest.mark.plain
 def test_a_material_point():
     """A lumped body heated from within, exact in any step; without exchange it warms by q t/(rho alpha)."""
     point = {"grid": {"dimension": 0}, "bodies": {"p": {"shape": {"point": {"surface_to_volume": 25}}, "temperature": 300, "material": "m"}}}
