@@ -12,7 +12,6 @@ from mpm.scene import cut as cutting
 from mpm.scene.base import Shape
 from mpm.scene.contents import CutCells, particles
 from mpm.scene.cut import Segment
-from mpm.scene.mesh import from_config
 from mpm.scene.sphere import ball, circle
 
 Point = tuple[float, ...]
@@ -203,6 +202,8 @@ def shape(model, dimension=None) -> Shape:
     if isinstance(model, Shape):
         return model
     if getattr(model, "kind", "") == "mesh":
+        from mpm.scene.mesh import from_config  # here, since it brings kernels
+
         return from_config(model)
     given = model if isinstance(model, dict) else {model.kind: model.model_dump()}
     (kind, values), *more = [(k, v) for k, v in given.items() if v is not None]
