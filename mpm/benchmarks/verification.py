@@ -17,7 +17,12 @@ import numpy as np
 from mpm.benchmarks import CONFIGS
 from mpm.benchmarks.wave import table
 
-ERRORS = {"error_displacement": "displacement, relative", "error_l2": "temperature, K", "error_relative": "all fields, relative"}  # the first that a run has
+ERRORS = {
+    "error_displacement": "displacement, relative",
+    "error_l2": "temperature, K",
+    "error_relative": "all fields, relative",
+    "error_force": "force at the end, relative",
+}  # the first that a run has
 BESIDE = ("error_velocity", "error_stress")
 FOLDER = CONFIGS / "verification"
 HEAD = """# Verification problems

@@ -98,7 +98,14 @@ class ThermalCylinder(Kind):
     body: str | None = doc(None, description=BODY)
 
 
+class Hertz(Kind):
+    """The force on a ball between a floor and a plate: Hertz's law with the compression of the whole ball."""
+
+    kind: ClassVar[str] = "hertz"
+    body: str | None = doc(None, description=BODY)
+
+
 MOVING: tuple[type[Kind], ...] = (
     RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured, CooksMembrane, Cantilever, TractionBar, ThermalShock,
-    ThermalCylinder,
+    ThermalCylinder, Hertz,
 )  # fmt: skip

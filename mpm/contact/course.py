@@ -53,11 +53,12 @@ class Course:
             self.block, scene.gravity = (momentum(scene), rows, dt), np.concatenate([first[None], rows[1:]])
 
     def work(self, scene) -> float:
-        """Of gravity in the block that is over [J]: sum over steps of its mean at both ends times momentum and dt. 0 where gravity stays: that is a potential.
+        """Of gravity in the block that is over [J]: sum over steps of its mean at both ends times momentum and dt. 0 where gravity stays: that is a potential;
+        0 of a block of no steps, which compiles only.
 
         Momentum in the middle of each step is what gravity made of that at the beginning; what other forces gave is spread evenly.
         """
-        if not self.gravity:
+        if not self.gravity or len(self.block[1]) == 1:
             return 0.0
         (p, mass), rows, dt = self.block
         half = 0.5 * mass * dt if scene.references else 0.0  # velocities of the total frame are those of the ends of steps

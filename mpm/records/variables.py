@@ -29,6 +29,7 @@ PER = {
     2: (("J/m", "W/m", "N/m", "N", "kg/m", "kg/s", "m2", "m"), "per metre of depth"),
 }
 EXACT_FIELDS = (("displacement", "m"), ("velocity", "m/s"), ("stress", "Pa"))
+RELATIVE = {"frequency": "frequency", "damping": "damping rate", "tip": "deflection of the tip", "force": "force at the end"}
 
 
 @dataclass(frozen=True)
@@ -94,9 +95,7 @@ TABLE = [
     *((f"error_{name}_max", "", units, SERIES, f"largest error of {name} against the exact solution") for name, units in EXACT_FIELDS),
     *((f"error_{name}", "", "1", POINT, f"error of {name} over its size, root mean square over the run") for name, _ in EXACT_FIELDS),
     ("error_temperature", "", "1", POINT, "error of temperature over its size, root mean square over the run"),
-    ("error_frequency", "", "1", POINT, "relative error of the frequency"),
-    ("error_damping", "", "1", POINT, "relative error of the damping rate"),
-    ("error_tip", "", "1", POINT, "relative error of the deflection of the tip"),
+    *((f"error_{key}", "", "1", POINT, f"relative error of the {name}") for key, name in RELATIVE.items()),
     ("tip_displacement", "", "m", SERIES, "deflection of the tip"),
     ("amplitude_displacement", "U", "m", SERIES, "displacement in the shape of the wave"),
     ("amplitude_temperature", "", "K", SERIES, "temperature in the shape of the wave"),

@@ -13,6 +13,7 @@ Further files
     gaussian_box         A Gaussian that spreads in an insulated box, by images
     heated_slab          A slab heated evenly from within that cools through one face or both
     hencky_bar           A bar of Hencky material in uniaxial strain that starts straight in its first mode
+    hertz                a ball between a floor and a plate
     hydrostatic_column   A column of Hencky material under its own weight, in uniaxial strain and at rest
     layers               layers in contact, slabs or coaxial cylinders
     lumped_cooling       A rigid body of one temperature that cools through its surface
@@ -47,6 +48,7 @@ from mpm.verification import (
     gaussian_box,
     heated_slab,
     hencky_bar,
+    hertz,
     hydrostatic_column,
     layers,
     lumped_cooling,
@@ -96,9 +98,10 @@ EXACT = {
     "traction_bar": traction_bar.exact,
     "thermal_shock": thermal_shock.exact,
     "thermal_cylinder": thermal_cylinder.exact,
+    "hertz": hertz.exact,
 }
 
-LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder")  # scenes that have loads of their own
+LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder", "hertz")  # scenes that have loads of their own
 SOURCED = ("heated_slab", "formulas")  # and sources
 
 

@@ -37,6 +37,13 @@ def test_free_fall_under_gravity_that_rises(plain):
         assert off[1] < 0.3 * off[0] and off[1] < 0.01 * 0.5
 
 
+def test_a_block_of_no_steps_does_no_work():
+    """With it a run compiles ahead: it ended there with an error."""
+    scene = build(mpm.load(FREE | {"gravity": [over([0, 0.5], [0, -4.0])]}))
+    scene.course.lay(scene, 0.0, 0.1, 0, 0.0)
+    assert scene.course.work(scene) == 0.0
+
+
 def test_gravity_that_jumps(plain):
     """Steps end on the jump, which no output time shares: momentum is exact after it."""
     jump = [over([0, 0.23, 0.23, 0.5], [-1, -1, 2, 2])]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm.verification import cantilever, exact_solution, thermal_cylinder
+from mpm.verification import cantilever, exact_solution, hertz, thermal_cylinder
 
 TOTAL = {"method.frame": "total"}
 
@@ -83,10 +83,35 @@ def test_bar_and_shock_hold_what_they_say(shipped):
     ("traction_bar", {"loads.0.traction.nominal": [0.9]}, "most that Hencky's law bears"),
     ("thermal_shock", {"bodies.slab.temperature": 390}, "reference temperature"),
     ("thermal_cylinder", {"surfaces.0.side": "lateral", "surfaces.1.side": "top"}, "inner and outer"),
+    ("hertz", {"tools.plate.friction": 0.1}, "without friction"),
+    ("hertz", {"walls.bottom": "slip"}, "a wall `contact`"),
 ])  # fmt: skip
 def test_another_scene_is_refused(shipped, name, changes, said):
     with pytest.raises(ValueError, match=said):
         exact_solution(shipped(name, changes))
+
+
+def test_a_ball_between_plates_is_that_of_hertz_where_the_contact_is_small():
+    """4/3 E/(1 - nu^2) sqrt(R d^3), and first in a/R more by 3/2 of what far loads give the other way: ((1 + nu)/4 + (1 - nu^2)/2) 4/(3 pi (1 - nu^2))."""
+    E, nu, R = 1e4, 0.3, 0.02
+    for small in (1e-3, 1e-2):
+        d = small**2 * R
+        more = hertz.force(d, E, nu, R) / (4 / 3 * E / (1 - nu**2) * np.sqrt(R * d**3)) - 1
+        assert more / small == pytest.approx(1.5 * ((1 + nu) / 4 + (1 - nu**2) / 2) * 4 / (3 * np.pi * (1 - nu**2)), rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_ball_between_plates(points):
+    """The force to 3 %, where its contact is 2.4 cells wide."""
+    (run,) = points("hertz", "grid.cell", (0.0625,))
+    assert run.finals["error_force"] < 0.03
+
+
+@pytest.mark.slow
+def test_a_disc_that_rolls(points):
+    """2/3 g sin to 3 %, its radius 8 cells."""
+    (run,) = points("rolling", "grid.cell", (0.0625,))
+    assert run.finals["momentum_x"] / run.finals["mass_total"] / run.times[-1] == pytest.approx(0.2, rel=0.03)
 
 
 @pytest.mark.slow  # compilations of heat in the total frame
