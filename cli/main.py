@@ -87,7 +87,7 @@ def main(arguments: list[str] | None = None) -> int:
         warnings.simplefilter("ignore")  # what users should know has words of its own; `python -W` shows the rest
     words = sys.argv[1:] if arguments is None else arguments
     whole = arguments is not None or any(word.startswith("--scheduler") for word in words)  # somebody else's process, or one that speaks to a cluster
-    with streams() as (out, err), unseen(*(() if whole else ("dask",))):
+    with streams() as (out, err), unseen(*(() if whole else ("dask", "babel"))):
         code = command_code(words)
         out.flush()
     return code or out.code or err.code

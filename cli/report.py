@@ -1,13 +1,28 @@
 """mpm report: one HTML page of a sweep."""
 
+import contextlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from mpm_cli.options import Folder, Json, Quiet, folder
-from mpm_cli.talk import document, say
+from mpm_cli.talk import document, say, warn
 
 TO = "File for the page.  [default: OUT/report.html]"
+
+
+@contextlib.contextmanager
+def without(what: str) -> Iterator[None]:
+    """What the results hold nothing for is left out, with a word: the page is worth having without it."""
+    from mpm.exports import ExportError
+    from mpm.movies import MovieError
+    from mpm.opened import UnknownPoint
+
+    try:
+        yield
+    except (ExportError, MovieError, UnknownPoint) as error:
+        warn(f"no {what}: {error}")
 
 
 def report(
@@ -25,19 +40,20 @@ def report(
     """
     from mpm.reports import report as write
 
-    also = []
+    also: list[Path] = []
     if with_movie:
         from mpm_cli.progress import counter
 
         from mpm.movies import movie
 
-        with counter("frames", as_json, quiet) as told:
+        with without("movie"), counter("frames", as_json, quiet) as told:
             also.append(movie(out, told=told))
     if with_paraview:
         from mpm.exports import export
         from mpm.plots import dataset_of
 
-        also += export(out, to=dataset_of(out).with_name("paraview.vtkhdf"))
+        with without("file for ParaView"):
+            also += export(out, to=dataset_of(out).with_name("paraview.vtkhdf"))
     written = write(out, to)
     if as_json:
         document({"file": written, "also": also})

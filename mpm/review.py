@@ -30,6 +30,7 @@ from mpm.records.variables import describe
 from mpm.rigid.touching import TOUCH
 from mpm.scene.exchange import most, programme
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
+from mpm.scene.rigid import matter
 from mpm.scene.scales import exchanging
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
@@ -87,16 +88,18 @@ def within(experiment: Any, run: Run) -> float:
     """The heat that evens out between warm and cold at the start [J]: the scale of a scene that exchanges none, whose ledger is round-off."""
     least, most = float(run.series["temperature_min"][0]), float(run.series["temperature_max"][0])
     alphas = [value(law(material.heat.alpha), least) for material in experiment.materials.values() if material.heat is not None]
-    return float(run.series["mass_total"][0]) * max(alphas) * (most - least) if alphas and "mass_total" in run.series else 0.0
+    if not alphas or most == least:
+        return 0.0
+    mass = run.series["mass_total"][0] if "mass_total" in run.series else sum(body["mass_total"] for body in matter(experiment))
+    return float(mass) * max(alphas) * (most - least)
 
 
 def heat(experiment: Any, run: Run) -> Iterator[str]:
     if "heat_ledger" not in run.series:
         return
     yield from conducted(experiment, run)
-    largest = max(within(experiment, run), *(np.abs(run.series[name]).max() for name in ("heat_total", "heat_exchanged")))
-    off = np.abs(run.series["heat_ledger"]).max()
-    if off > HEAT * largest > 0:
+    largest, off = (max(np.abs(run.series[name]).max() for name in names) for names in (("heat_total", "heat_exchanged"), ("heat_ledger",)))
+    if off > HEAT * largest and off > HEAT * (largest := max(largest, within(experiment, run))) > 0:
         yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {100 * off / largest:.2g} % of the larger"
 
 

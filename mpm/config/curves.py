@@ -21,7 +21,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mpm.config.headers import BRACKET, DAYS, SHORT, TIMES, Unreadable, fields, header, is_export, seconds_of, unit_of, units_of, with_units
+from mpm.config.headers import BRACKET, DAYS, SHORT, TIMES, Unreadable, column, fields, header, is_export, seconds_of, unit_of, units_of, with_units
 from mpm.config.problems import brief, listed
 
 DATE = r"(?:(?P<date>\d{4}[-/]\d{2}[-/]\d{2}|\d{1,2}[./]\d{1,2}[./](?:\d{4}|\d{2})),?[T ]\s*)?"
@@ -110,6 +110,7 @@ def columns(lines: list[tuple[int, str]], time: str, value: str, sigma: str) -> 
     """The columns of time, value and standard error, by the names given or, where those are empty, by what the header allows."""
     place, names, sign = header(lines, time, value)
     head, named = lines[place][0], bool(time)
+    time, value, sigma = (column(said, names) for said in (time, value, sigma))
     told = with_units(names, fields(*lines[place + 1], sign)) if place + 1 < len(lines) else None  # a row of units below the names
     full = dict(zip(names, told or names, strict=True))
     time = time or timed(names, names) or timed(names, told or names)

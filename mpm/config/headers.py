@@ -71,6 +71,12 @@ def seconds_of(name: str) -> float | None:
     return None
 
 
+def column(said: str, names: list[str]) -> str:
+    """The column that is meant: of that name, else the only one of that name before a unit in brackets (`core`: `core [°F]`); as said where there is none."""
+    alike = [name for name in names if BRACKET.sub("", name).strip() == said]
+    return alike[0] if said and said not in names and len(alike) == 1 else said
+
+
 def header(lines: list[tuple[int, str]], time: str, value: str) -> tuple[int, list[str], str]:
     """(place among the lines, names of the columns, sign between fields)."""
     several = timed = first = None
@@ -85,12 +91,12 @@ def header(lines: list[tuple[int, str]], time: str, value: str) -> tuple[int, li
                 wrong = wrong or error
                 continue
             found = place, names, sign
-            if value and value in names and (not time or time in names):
+            if value and column(value, names) in names and (not time or column(time, names) in names):
                 return found
             first = first or found
             if len(names) > 1:
                 several = several or found
-                if (time in names) if time else any(seconds_of(name) is not None for name in names):
+                if (column(time, names) in names) if time else any(seconds_of(name) is not None for name in names):
                     timed = timed or found
     best = timed or several or first
     if best is None:

@@ -24,7 +24,7 @@ class Measured(Model):
     file: str = doc("", description="CSV file, relative to the config")
     of: str | None = doc(None, description="the observable or probe that was measured; the probe of the curve's name unless given")
     time: str = doc("", description="column of the time; its name tells the unit, clock times count from the first row")
-    value: str = doc("", description="column of the value; its name tells the unit, as height_mm, T [°C], oven_degF; the only one beside the time unless given")
+    value: str = doc("", description="column of the value; its name tells the unit, as height_mm, oven_degF, T [°C] (T will do); the only one unless given")
     unit: str = doc("", description="unit of the column, where its name tells none")
     start: float | str | None = doc(None, description="what the time column shows as the run begins; rows before are left out")
     sigma: float | str | None = doc(None, description="standard error of the values: a number, text with a unit, or the name of a column")

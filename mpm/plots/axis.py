@@ -42,10 +42,11 @@ class Axis:
         scale = words.scale(raw, units, words.is_temperature_path(path) or named)
         values = scale(raw)
         log = log_spaced(values) and not scale.shift if log is None else bool(log and (values > 0).all())
-        letter = words.symbol(name)
-        long = words.short(attrs.get("long_name", name))
-        title = words.with_units(letter or (long if len(long) <= SHORT else name.rsplit(".", 1)[-1].replace("_", " ")), scale.units)
-        return cls(name, dim, values, words.compose(name, attrs.get("long_name", name), scale.units), title, scale.units, log, False, placed(values, log))
+        called, long = words.called(name), words.short(attrs.get("long_name", name))
+        title, label = called if words.symbol(name) or len(long) > SHORT else long, words.compose(name, attrs.get("long_name", name), scale.units)
+        if name.endswith("_" + path.rsplit(".", 1)[-1]):  # several have one: say whose it is
+            title, label = called, words.with_units(f"{words.title_case(long)}, {called}", scale.units)
+        return cls(name, dim, values, label, words.with_units(title, scale.units), scale.units, log, False, placed(values, log))
 
     @property
     def size(self) -> int:
@@ -81,7 +82,7 @@ class Axis:
     @property
     def called(self) -> str:
         """The letter of the parameter, else its name as words."""
-        return words.symbol(self.name) or self.name.rsplit(".", 1)[-1].replace("_", " ")
+        return words.called(self.name)
 
     def apply(self, ax: Any) -> None:
         """Scale, ticks and label of the horizontal axis."""

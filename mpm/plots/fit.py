@@ -114,7 +114,7 @@ def valley(ax: Any, root: Any, profile: Any, k: int) -> None:
     ax.axhline(1, color=QUIET, lw=0.8)
     ax.axvline(best, color=INK, lw=0.8)
     name, unit = str(root.parameter.values[k]), str(root.parameter_units.values[k])
-    said = words.symbol(name) or name.replace("_", " ")
+    said = words.called(name)
     long_name = str(root.parameter_long_name.values[k])
     ax.set(xlabel=words.wrapped(words.compose(name, long_name, words.units_text(unit)), 36), ylim=(0, 2.2))
     ax.set_title(f"{said} = {amount(best, error)}")

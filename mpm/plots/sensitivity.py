@@ -41,7 +41,7 @@ def draw(found: Any) -> Any:
 
 def said_of(name: str) -> str:
     """A parameter's symbol, else its name."""
-    return words.symbol(name) or name.replace("_", " ")
+    return words.called(name)
 
 
 def bars(ax: Any, found: Any, k: int, names: list[str]) -> None:

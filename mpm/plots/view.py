@@ -259,12 +259,12 @@ class View:
         return isinstance(spans[0], dict) and "log" in spans[0] if spans else None
 
     def series_names(self) -> list[str]:
-        """Series with a number somewhere, probes first, then what the config lists; those that change where it lists nothing."""
+        """Series with a number somewhere: what the overview asks for, probes, what the config lists; else errors, then the others that change."""
         if self.series is None:
             return []
         there = [str(name) for name, row in self.series.data_vars.items() if "time" in row.dims and np.isfinite(row.values).any()]
-        wanted = [name for name in dict.fromkeys([*self.probes, *self.listed]) if name in there]
-        return wanted or [name for name in there if self.changes(name)] or there
+        wanted = [name for name in dict.fromkeys([*self.asked, *self.probes, *self.listed]) if name in there]
+        return wanted or sorted((name for name in there if self.changes(name)), key=lambda name: not name.startswith("error_")) or there
 
     def changes(self, name: str) -> bool:
         """Whether a series changes with time by more than round-off."""
@@ -285,4 +285,9 @@ class View:
         found: dict[tuple[str, str], list[str]] = {}
         for name in self.series_names():
             found.setdefault(self.kin(name), []).append(name)
-        return [names for names in found.values() if any(self.told(name) for name in names)] or list(found.values())
+        return [names for names in found.values() if any(self.told(name) for name in names) and not self.unkept(names)] or list(found.values())
+
+    def unkept(self, names: list[str]) -> bool:
+        """Whether the books of a family miss about what they hold, in a run that is not warned of: both are round-off."""
+        sizes = {name: float(np.nanmax(np.abs(self.series[name].values), initial=0.0)) for name in names}
+        return not self.warned.any() and max((size for name, size in sizes.items() if name.endswith("_ledger")), default=0.0) > 0.1 * max(sizes.values())

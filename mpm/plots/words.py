@@ -111,6 +111,12 @@ def symbol(name: str) -> str:
     return SYMBOLS.get(word, word if re.fullmatch(r"[A-Za-z]\d?", word) else "")  # M or k0, but no zz
 
 
+def called(name: str) -> str:
+    """The letter of a parameter, behind whose it is where its name says so (`pan convection β`); else its name as words."""
+    *whose, last = name.rsplit(".", 1)[-1].split("_")
+    return symbol(name) or " ".join([*whose, SYMBOLS.get(last, last)])
+
+
 def short(long_name: str) -> str:
     """A long name without its afterthoughts: up to the first semicolon, colon, bracket or weight."""
     return re.split(r"[;:(]|, weighted", long_name)[0].strip()

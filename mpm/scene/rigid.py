@@ -88,7 +88,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     series = {dataset_name(name): values for name, values in solved.series.items()}
     series["heat_total"] = series.pop("heat")
     series |= look.errors(solved.snapshots, shift, len(solved.times))
-    masses = matter(experiment)
+    masses = matter(experiment) if {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"} else []
     asked = {dataset_name(name) for name in experiment.output.observables} & {"mass_total", "volume_total"}
     series |= {name: np.full(len(solved.times), sum(one[name] for one in masses)) for name in sorted(asked)} | of_bodies(experiment, solved, masses)
     finals = {name: float(values[-1]) for name, values in series.items()}
@@ -107,10 +107,10 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
 
 
 def matter(experiment) -> list[dict[str, float]]:
-    """Mass and volume of each body, where asked for: exact, from their outlines; per radian in an axisymmetric scene, as all that the solver sums."""
-    asked, grid, found = {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"}, experiment.grid, []
+    """Mass and volume of each body: exact, from their outlines; per radian in an axisymmetric scene, as all that the solver sums."""
+    grid, found = experiment.grid, []
     edges = [np.arange(round(size / grid.cell) + 1) * grid.cell for size in grid.size]
-    for body in experiment.bodies.values() if asked else ():
+    for body in experiment.bodies.values():
         points, _ = cut_quadrature(shape(body.shape, grid.dimension), edges, 2)
         volume = float(np.sum(points.w * (points.x[:, 0] if grid.dimension == "axisymmetric" else 1.0)))
         found.append({"mass_total": volume * experiment.materials[body.material].density, "volume_total": volume})

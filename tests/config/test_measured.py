@@ -44,6 +44,15 @@ def test_the_only_column_beside_the_time_needs_no_name(tmp_path):
         mpm.load(tmp_path / "scene.yaml")
 
 
+def test_a_column_is_named_with_or_without_the_unit_in_brackets(tmp_path):
+    path = written(tmp_path, "", BASE.replace("time: minute, value: oven_degC", "time: Elapsed, value: core"))
+    (tmp_path / "curve.csv").write_text("Elapsed [min],core [°F],oven [°F]\n1,80.33,400\n")
+    assert mpm.load(path).output.measured["middle"].samples[0] == pytest.approx((60, 300), abs=1e-9)  # 80.33 °F
+    (tmp_path / "curve.csv").write_text("Elapsed [min],core [°F],core [°C]\n1,80.33,400\n")
+    with pytest.raises(mpm.ConfigError, match=r"no such column: 'core'; allowed: core \[°F\], core \[°C\]"):
+        mpm.load(path)
+
+
 def test_misfit_is_the_root_mean_square_difference_at_times_reached(tmp_path):
     # Nothing heats the slab: it stays at 300 K, so the differences are 0 and 10 K; the third row lies beyond the end.
     run = mpm.run_point(mpm.load(written(tmp_path, "1,26.85\n2,36.85\n3,1000\n")))

@@ -11,6 +11,8 @@ from mpm.records.variables import describe
 PARAMETERS = {
     "kappa": ("W/m/K", "heat conductivity", "materials.dough.heat.fourier.kappa"),
     "beta": ("W/m2/K", "heat-transfer coefficient; .inf fixes the temperature of the surface", "surfaces.0.convection.beta"),
+    "pan_convection_beta": ("W/m2/K", "heat-transfer coefficient; may change over time", "surfaces.pan.convection.beta"),
+    "air_convection_beta": ("W/m2/K", "heat-transfer coefficient; may change over time", "surfaces.air.convection.beta"),
     "eta": ("Pa*s", "viscosity of the overstress", "materials.dough.flow.ellipse.eta"),
     "cell": ("m", "edge of a cell", "grid.cell"),
     "transfer": ("1", "transfer of velocity", "method.transfer"),

@@ -101,6 +101,13 @@ def test_infinity_has_a_place_on_the_axis(tree):
     np.testing.assert_allclose(ax.lines[0].get_xdata(), [0.1, 1, 10, 100])
 
 
+def test_two_coefficients_of_one_name_say_whose_they_are(tree):
+    data = tree({"pan_convection_beta": [1.0, 5.0, 9.0], "air_convection_beta": [2.0, 3.0]}, {"temperature_mean": np.ones((3, 2)) * 300})
+    panel = _draw(data, "overview").axes[0]
+    assert panel.get_xlabel() == "Heat-transfer coefficient, pan convection β [W/m²/K]"
+    assert "air convection β [W/m²/K]" in texts(panel.figure)
+
+
 def test_kinds_on_an_axis_are_words(tree):
     fig = overview(tree({"transfer": np.array(["apic", "flip"], dtype=object)}, {"temperature_mean": [300.0, 301.0]}))
     assert [tick.get_text() for tick in panels(fig)[0].get_xticklabels()] == ["apic", "flip"]
@@ -260,6 +267,14 @@ def test_round_off_and_what_never_changes_is_no_trend(tree):
     assert overview(made).axes[0].get_ylabel() == "Mean temperature [°C]"
     low, high = mpm.plots.over_time(made, "energy_kinetic").axes[0].get_ylim()
     assert high - low > 1e9 * 1e-21
+
+
+def test_books_that_hold_what_they_miss_are_not_drawn(tree):
+    time = np.linspace(0, 1, 6)
+    series = {"heat_total": 1e-15 * np.sin(9 * time), "heat_ledger": 1e-15 * np.cos(7 * time), "temperature_max": 300 + time, "error_l2": 0.1 * time}
+    made = tree({}, {"temperature_max": 301.0}, series, time=time)
+    said = [ax.get_ylabel().replace("\n", " ") for ax in panels(overview(made))]
+    assert said == ["Root-mean-square error against the exact solution [K]", "Highest temperature [°C]"]
 
 
 def test_no_axis_writes_mathematics_or_a_factor_at_its_end(tree, tmp_path):

@@ -246,3 +246,14 @@ def brush(browser):
     for part in (0.3, 0.5, 0.6):
         browser.mouse("mouseMoved", x, box[1] + part * box[3])
     browser.mouse("mouseReleased", x, box[1] + 0.6 * box[3])
+
+
+def test_results_without_snapshots_get_the_page_without_a_movie(tmp_path, monkeypatch, capsys):
+    from mpm_cli.main import main
+
+    sweep(tmp_path / "out", monkeypatch)
+    assert main(["report", str(tmp_path / "out"), "--movie", "--paraview", "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out) == {"file": str(tmp_path / "out/report.html"), "also": []} and (tmp_path / "out/report.html").exists()
+    assert re.search(r"^no movie: .*κ = 2 W/m/K: there are no snapshots; output\.snapshots in the config asks for them$", err, re.MULTILINE)
+    assert "no file for ParaView: " in err
