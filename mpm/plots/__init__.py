@@ -5,7 +5,7 @@
     final(tree, of, over, ax)      one result over a swept parameter;   over_time(tree, of, ax)   series: on axes of the user's own, or on a figure of theirs
     KINDS                          names of figures: overview, series, finals
 
-Overview    one axis or two   a final (`error_l2`, else `time_to_*`, else the first listed observable) over the longest axis, a line a value of the other;
+Overview    one axis or two   a final (an error, else `time_to_*`, else the first listed observable) over the longest axis, a line a value of the other;
                               beside it the probes' temperatures of a few points, coloured by swept value. A third axis makes a panel a value; further ones stay
                               at the chosen point.
             a sample          observables against each parameter, and rank correlations with bootstrap intervals

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.transforms import blended_transform_factory
 
 from mpm.plots import words
-from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, heading, legend_below, plain_ticks
+from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, heading, legend_below, level, plain_ticks
 from mpm.plots.view import LOG_RATIO, Axis, View, tally
 
 ROW = 0.045  # height of a row of marks, in the panel's height
@@ -44,6 +44,7 @@ def panel(ax: Any, view: View, name: str, x: Axis, lines: Axis | None, at: dict[
     letters = 28 if place is not None and place.get_gridspec().nrows > 1 else 40
     ax.set_ylabel(words.wrapped(view.label(name, scale.units), letters))
     wide(ax, shown, name)
+    level(ax, shown[np.isfinite(shown)], 1e-6)
     values_key = [] if lines is None or not key else keys(ax, lines, colours)
     reasons_key = marks(ax, view, name, x, lines, at, values, colours)
     if not np.isfinite(values).any():
@@ -132,21 +133,23 @@ def room(ax: Any, down: float, up: float) -> None:
     ax.set_ylim(transform.inverted().transform(np.array([low - span * down, high + span * up])))
 
 
-def errors(ax: Any, view: View, x: Axis, at: dict[str, int]) -> None:
-    """Errors against the exact solution over an axis, logarithmic both where they can be; over a cell or a step, the slope that they fall with."""
-    names = [name for name in ("error_l2", "error_max") if name in view.finals]
+def errors(ax: Any, view: View, x: Axis, at: dict[str, int], name: str) -> None:
+    """An error against the exact solution, root mean square `name` and largest, over an axis, logarithmic both where they can be; over a cell or a step,
+    the slope that they fall with."""
+    largest = f"{name.removesuffix('_l2')}_max"
+    names = [name, *([largest] if largest in view.finals else [])]
     scale, order, handles = view.scale(names[0]), np.argsort(x.positions, kind="stable"), []
-    for name, colour, dash in zip(names, OKABE_ITO, DASHES, strict=False):
-        values = scale(table(view, name, x, None, at))[0]
+    for each, colour, dash in zip(names, OKABE_ITO, DASHES, strict=False):
+        values = scale(table(view, each, x, None, at))[0]
         ax.plot(x.positions[order], values[order], color=colour, ls=dash, marker="o", clip_on=False, zorder=3)
-        said = {"error_l2": "root mean square", "error_max": "largest"}[name]
+        said = "root mean square" if each == name else "largest"
         if x.name in ("cell", "step") and (rate := slope(x.values, values)) is not None:
             said += f", order {rate:.2f}"
         handles.append(Line2D([], [], color=colour, ls=dash, marker="o", ms=4, label=said))
     handles += hollow(ax, view, x, None, at, scale(table(view, names[0], x, None, at)), [OKABE_ITO[0]])
     x.apply(ax)
-    ax.set_ylabel(words.with_units("Error against the exact solution", scale.units))
-    every = np.concatenate([table(view, name, x, None, at).ravel() for name in names])
+    ax.set_ylabel(words.wrapped(view.label(name, scale.units).replace("Root-mean-square error", "Error"), 40))
+    every = np.concatenate([table(view, each, x, None, at).ravel() for each in names])
     wide(ax, every, names[0])
     reasons = marks(ax, view, names[0], x, None, at, table(view, names[0], x, None, at), [INK])
     legend_below(ax, [handles, *([key] for key in reasons)])

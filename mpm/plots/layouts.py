@@ -10,7 +10,7 @@ from mpm.plots.sample import FEWEST, chief, scatter
 from mpm.plots.style import INK, QUIET, figure, styled
 from mpm.plots.view import Axis, View, spread
 
-THIRD = 45  # letters of a legend under a panel of three in a row
+THIRD = 36  # letters of a legend under a panel of three in a row
 
 
 def overview(view: View) -> Any:
@@ -100,8 +100,8 @@ def swept(view: View) -> Any:
         ax.set_axis_off()
     for ax, facet in zip(grid, facets, strict=False):
         here = at if facet is None else {**at, rest[0].dim: facet}
-        if name == "error_l2" and lines is None:
-            finals.errors(ax, view, x, here)
+        if name.endswith("_l2") and lines is None:
+            finals.errors(ax, view, x, here, name)
         else:
             finals.panel(ax, view, name, x, lines, here, key=facet in (None, facets[0]))
         fixed = [axis.says(here[axis.dim]) for axis in rest]
@@ -122,7 +122,8 @@ def series_of(view: View) -> list[str]:
     there = view.series_names()
     if asked := [name for name in view.asked if view.series is not None and name in view.series and "time" in view.series[name].dims]:
         return [name for name in asked if view.kin(name) == view.kin(asked[0])][:4]
-    errors: list[str] = [name for name in ("error_l2", "error_max") if name in there]
+    errors = [name for name in there if name.startswith("error_")]
+    errors = [name for name in errors if view.kin(name) == view.kin(errors[0])][:4]
     probes = [name for name in view.probes if name in there]
     return probes[:4] or errors or (view.families()[0][:4] if there else [])
 

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from mpm.plots import words
-from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, heading, legend_below
+from mpm.plots.style import DASHES, FAINT, INK, OKABE_ITO, QUIET, heading, legend_below, level
 from mpm.plots.view import NOTHING, Axis, View, spread
 
 MOST_LINES = 5
@@ -61,10 +61,12 @@ def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
 
 
 def labels(view: View, names: list[str]) -> list[str]:
-    """Series in one legend, apart by their names' second part where the first is the same: `heat, hot between` of two pairs of bodies."""
+    """Series in one legend, apart by the parts of their names that differ where the first is the same: `heat, hot between` of two pairs of bodies."""
     texts = [called(view, name) for name in names]
-    parts = [words.short(view.long_name(name)).split(", ")[1:2] for name in names]
-    return [f"{name.split('_', 1)[0]}, {part[0]}" if part and texts.count(text) > 1 else text for name, text, part in zip(names, texts, parts, strict=True)]
+    parts = [words.short(view.long_name(name)).split(", ") for name in names]
+    alike = [[other for one, other in zip(texts, parts, strict=True) if one == text] for text in texts]
+    differ = [[part for k, part in enumerate(own) if len({tuple(other[k : k + 1]) for other in same}) > 1] for own, same in zip(parts, alike, strict=True)]
+    return [", ".join([name.split("_", 1)[0], *own]) if own else text for name, text, own in zip(names, texts, differ, strict=True)]
 
 
 def picked(lines: Axis, at: dict[str, int], there: list[int]) -> list[int]:
@@ -120,11 +122,7 @@ def calm(ax: Any, values: np.ndarray, floor: float) -> None:
     low, high = ax.get_ylim()
     if max(abs(low), abs(high)) < floor:
         ax.set_ylim(-1e6 * floor, 1e6 * floor)  # beside what others of its unit are
-    if finite.size and np.ptp(finite) <= 1e-9 * np.abs(finite).max():
-        middle = float(finite.mean())
-        low, high = ax.get_ylim()
-        if high - low < 1e-6 * abs(middle):
-            ax.set_ylim(middle - 0.05 * abs(middle), middle + 0.05 * abs(middle))
+    level(ax, finite, 1e-9)
 
 
 def stopped(ax: Any, view: View, at: dict[str, int], time: np.ndarray, values: np.ndarray, colour: Any) -> bool:

@@ -160,6 +160,14 @@ def plain_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def level(ax: Any, values: np.ndarray, share: float) -> None:
+    """A vertical axis on which finite values that are the same to `share` of themselves make a level line, not noise."""
+    middle = float(values.mean()) if values.size else 0.0
+    low, high = ax.get_ylim()
+    if values.size and np.ptp(values) <= share * np.abs(values).max() and high - low < 1e-3 * abs(middle):
+        ax.set_ylim(middle - 0.05 * abs(middle), middle + 0.05 * abs(middle))
+
+
 class Plain(Formatter):
     """Ticks in our own numbers, in as many digits as tell them apart."""
 

@@ -163,10 +163,12 @@ class View:
         names = [str(name) for name, row in self.root.data_vars.items() if name not in BOOKKEEPING and row.dims == self.dims and row.dtype.kind in "fiu"]
         there = [name for name in names if np.isfinite(self.root[name].values).any()]
         refined = ((self.config.get("sweep") or {}).get("refine") or {}).get("of", "")
-        first = [*filter(None, [self.wanted, dataset_name(refined)]), *self.asked, "error_l2", *(name for name in there if name.startswith("time_to_"))]
+        errors = sorted((name for name in there if name.startswith("error_")), key=lambda name: not name.endswith("_l2"))
+        first = [*filter(None, [self.wanted, dataset_name(refined)]), *self.asked, *errors, *(name for name in there if name.startswith("time_to_"))]
         wanted = [*first, *self.listed, *self.probes, *there]
         found = [name for name in dict.fromkeys(wanted) if name in there]
-        return sorted(found, key=lambda name: name != self.wanted and name not in self.asked and (self.round_off(name) or self.constant(name)))
+        dull = lambda name: name != self.wanted and name not in self.asked and 2 * self.round_off(name) + self.constant(name)  # noqa: E731
+        return sorted(found, key=dull)
 
     @property
     def unreached(self) -> list[str]:
@@ -181,14 +183,15 @@ class View:
 
     def round_off(self, name: str) -> bool:
         """Whether a final is round-off: an error of the digits themselves, books that are right, or the kinetic energy of what has come to rest."""
-        most, values = 0.0, np.nanmax(np.abs(self.root[name].values), initial=0.0)
+        units, values = self.root[name].attrs.get("units", "1"), np.nanmax(np.abs(self.root[name].values), initial=0.0)
+        most, whole = 0.0, self.largest(units)
         if name.startswith("error_"):
-            return bool(values < 1e-13 * self.largest(self.root[name].attrs.get("units", "1")))
+            return bool(values < 1e-13 * max(whole, float(units == "1")))  # one without a unit is a share
         if name.endswith("_ledger"):
-            return bool(values < 1e-9 * self.largest(self.root[name].attrs.get("units", "1")))
+            return bool(values < 1e-9 * whole)
         if self.series is not None and name in self.series and name.startswith(("energy", "momentum", "velocity")):
-            most = max(np.nanmax(np.abs(self.series[name].values), initial=0.0), 1e-6 * self.largest(self.series[name].attrs.get("units", "1")))
-        return bool(values < max(1e-9 * most, NOTHING * self.largest(self.root[name].attrs.get("units", "1"))))
+            most = max(np.nanmax(np.abs(self.series[name].values), initial=0.0), 1e-6 * whole)
+        return bool(values < max(1e-9 * most, NOTHING * whole, NOTHING * (units == "Pa")))
 
     def largest(self, units: str) -> float:
         """The largest number of all series of a unit."""

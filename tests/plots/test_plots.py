@@ -152,6 +152,13 @@ def test_a_run_that_asks_for_nothing_shows_what_changes(tree):
     assert [ax.get_ylabel() for ax in panels(fig)] == ["Total mass [kg]"]
 
 
+def test_series_in_one_legend_have_names_of_their_own(tree):
+    """Once both were called `force, on bodies by bottom`."""
+    time = np.linspace(0, 1, 5)
+    series = {"force_bottom_x": time, "force_bottom_y": 2 * time}
+    assert {"force, along x", "force, along y"} <= set(texts(overview(tree({}, {"force_bottom_x": 1.0}, series, time=time))))
+
+
 def test_what_no_point_reached_is_told_under_the_figure(tree):
     time = np.linspace(0, 10, 11)
     finals = {"temperature_mean": [300.0, 310.0], "time_to_centre_95_degC": [np.nan, np.nan]}

@@ -111,7 +111,7 @@ def stability(folder, monkeypatch):
     from mpm.sweep.engine import Options
 
     monkeypatch.setattr(engine, "RUNNER", "fake_runner")
-    about = {"across": {"alpha": [500, 1000]}, "along": {"kappa": [10, 12, 13, 16, 17]}, "panels": {"step": {}}, "toward": "larger", "resolution": 0.05}
+    about = {"across": {"alpha": [500, 1000]}, "along": {"kappa": [6, 8, 13, 15.5, 17]}, "panels": {"step": {}}, "toward": "larger", "resolution": 0.05}
     one = configured(sweep=None, stability=about | {"lines": [{"label": "theory <b>", "formula": "12 + 0*x", "source": "none"}]})
     run(mpm.load(one), folder, Options(jobs=0), told=lambda text: None)
     return folder
