@@ -56,7 +56,7 @@ def heat_scale(experiment, run):
 
 
 SLOW = ("verification", "stability", "studies", "reduction")  # a compilation each
-ALONE = ("lava_cake", "press_tpa", "ball_on_slab")  # scenes whose physics no other compiles
+ALONE = ("lava_cake", "press_tpa", "ball_on_slab", "burger_cheese")  # scenes whose physics no other compiles
 SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW or path.stem in ALONE else []) for path in CONFIGS]
 
 

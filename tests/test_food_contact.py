@@ -1,4 +1,4 @@
-"""Scenes of contact against uniaxial flow, balances of momentum."""
+"""Scenes of contact against uniaxial flow, balances of momentum, two layers that conduct."""
 
 from pathlib import Path
 
@@ -44,3 +44,34 @@ def test_a_ball_is_borne_by_what_it_hits():
     assert speed[-1] == pytest.approx(0.0, abs=5e-3) and np.abs(speed).max() > 0.3
     assert np.trapezoid(speed, t) == pytest.approx(fallen[-1], abs=5e-4)
     assert -s["force_slab_ball_z"][-20:].mean() == pytest.approx(m * G, rel=0.02)
+
+
+def layers(t, n=60):
+    """Temperatures 0.5 mm above and below the faces of the cheese far from its rim [degC]: patty, insulated below, cheese, lid, by volumes on a line."""
+    from scipy.linalg import expm
+
+    thick, kappa, capacity = (0.012, 0.003), (0.45, 0.35), (1060 * 3500, 1100 * 2800)
+    h = np.repeat(thick, n) / n
+    half = 0.5 * h / np.repeat(kappa, n)
+    between = 1 / (half[1:] + half[:-1] + np.where(np.arange(1, 2 * n) == n, 1 / 1000, 0.0))
+    A = np.diag(between, 1) + np.diag(between, -1)
+    A -= np.diag(A.sum(axis=1))
+    lid = 1 / (1 / 60 + half[-1])
+    A[-1, -1] -= lid
+    A /= (h * np.repeat(capacity, n))[:, None]
+    start = np.repeat((75.0, 8.0), n) - 95.0
+    return np.interp((0.0125, 0.0145), np.cumsum(h) - 0.5 * h, 95.0 + expm(A * t) @ start)
+
+
+@pytest.mark.slow
+def test_cheese_warms_as_two_layers_do():
+    """In the middle, to 2 % of the difference at the start, its cells two to the slice; then its rim hangs, and not before it is warm."""
+    found = run("burger_cheese")
+    assert not found.facts.get("warnings")
+    s, t = found.series, found.times
+    for when in (40, 60, 90):
+        at = np.argmin(np.abs(t - when))
+        assert [s["temperature_under"][at] - 273.15, s["temperature_top"][at] - 273.15] == pytest.approx(layers(t[at]), abs=0.02 * 87)
+    low = s["position_min_z_cheese"]
+    cold = low[t < 30].min()
+    assert cold > 9.5e-3 and low[-1] < cold - 3e-3
