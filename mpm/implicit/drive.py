@@ -69,7 +69,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         if not (sound := guards.block(scene, clock)).ok:
             return sound
         told, left = clock.told, until - clock.time
-        count = max(1, math.ceil(left / (scene.step or told["next"]) * (1 - 1e-9)), math.ceil(left * fastest(scene, clock, left) / (STRIDE * scene.space.h)))
+        count = max(1, math.ceil(left / told["next"] * (1 - 1e-9)), math.ceil(left * fastest(scene, clock, left) / (STRIDE * scene.space.h)))
         dt, before = left / count, keep(scene, clock)
         error, found = pair(scene, clock, work, dt, warm)
         told = clock.told
@@ -80,7 +80,8 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
             told["failed" if not found.ok else "rejected"] += 1
             told["again"], told["next"] = int(found.ok), dt * (factor(scene.implicit, error) if found.ok else CUT)
             continue
-        told["next"], told["last"], told["again"] = dt * (factor(scene.implicit, error) if told["last"] > 0 else 1.0), dt, 0
+        told["next"] = scene.step or dt * (factor(scene.implicit, error) if told["last"] > 0 else 1.0)
+        told["last"], told["again"] = dt, 0
         binding = "time.step" if scene.step else "error of the step"
         clock.bound[binding] = clock.bound.get(binding, 0) + 1
         clock.steps += 1

@@ -15,11 +15,8 @@ import numpy as np
 
 from mpm.basis import stencil
 from mpm.boundary import directions, extents
-from mpm.heat.local import thermal_stress
-from mpm.heat.setting import condition
-from mpm.implicit.trial import dilation, gradients, increment, trial
+from mpm.implicit.trial import answered, dilation, gradients, increment
 from mpm.jit import kernel, role
-from mpm.materials import response, settled, warmed
 from mpm.state import NoAverage
 
 
@@ -142,11 +139,7 @@ def average_stresses_spans(spans, space, body, nodes, u, dt):
     g, wr, tau, a = np.zeros((M, max(D, 2))), np.zeros(M), np.empty(3), np.empty((3, 3))
     spans.slope[:] = 0.0
     for p in range(x.shape[0]):
-        A = increment(space, nodes, u, x, p)
-        _, _, trace, d, size, _, _ = trial(space, body.particles.B, A, spans.extra[p], p)
-        theta = condition(body.setting, body.thermal, p)
-        thermal, law = thermal_stress(body.expansion, body.thermal, p, theta), settled(body.flow, body.particles.J[p])
-        response(warmed(body.elastic, theta), law, trace, d, size, thermal, theta, dt, tau, a)
+        A, _, _, _, _, _ = answered(space, body, nodes, u, p, spans.extra[p], dt, tau, a)
         spans.grown[p] = (tau[0] + tau[1] + tau[2]) / 3.0
         gradients(space, nodes, A, x, p, g, wr)
         part = V0[p] / spans.volume[spans.of[p]]

@@ -1,9 +1,12 @@
-"""The trial state of a particle in an implicit step (docs/physics.md 17): increment, strains, axes, gradients in the moved shape."""
+"""A particle in an implicit step (docs/physics.md 17): increment, trial strains and axes, what its laws answer, gradients in the moved shape."""
 
 import math
 
 from mpm.boundary import directions
+from mpm.heat.local import thermal_stress
+from mpm.heat.setting import condition
 from mpm.jit import kernel, role
+from mpm.materials import response, settled, warmed
 from mpm.state import Axisymmetric, Line, Plane, Volume
 from mpm.tensors import dilation2, dilation3, eigen2, eigen3, push2, push3
 
@@ -163,6 +166,22 @@ def trial(space, B, A, extra, i):
         trace, grow = trace + 3.0 * extra, math.expm1(math.log1p(grow) + 3.0 * extra)
     d1, d2, d3 = ((e1 - e2) + (e1 - e3)) / 3.0, ((e2 - e1) + (e2 - e3)) / 3.0, ((e3 - e1) + (e3 - e2)) / 3.0
     return b, axes, trace, (d1, d2, d3), math.sqrt(d1 * d1 + d2 * d2 + d3 * d3), grow, True
+
+
+@kernel(inline=True)
+def answered(space, body, nodes, u, p, extra, dt, tau, a):
+    """(increment, eigenvalues and axes of its trial b, its elastic law, W [J/m3], share of the deviator that is left) of particle p at displacements u.
+
+    `extra` is added to each strain. Principal stresses go to tau (3,), their slopes to a (3, 3). W is inf where the trial state or the return map is unsound.
+    """
+    A, theta = increment(space, nodes, u, body.particles.x, p), condition(body.setting, body.thermal, p)
+    values, axes, trace, d, size, _, sound = trial(space, body.particles.B, A, extra, p)
+    elastic, law = warmed(body.elastic, theta), settled(body.flow, body.particles.J[p])
+    if not sound:
+        return A, values, axes, elastic, math.inf, 1.0
+    thermal = thermal_stress(body.expansion, body.thermal, p, theta)
+    W, share, good = response(elastic, law, trace, d, size, thermal, theta, dt, tau, a)
+    return A, values, axes, elastic, W if good else math.inf, share
 
 
 @role

@@ -8,13 +8,11 @@ import math
 
 import numpy as np
 
-from mpm.heat.local import thermal_stress
-from mpm.heat.setting import condition
 from mpm.implicit.matrix import between
 from mpm.implicit.spans import average_stresses, average_volumes, extra_strain, extra_stress, tied, tilt
-from mpm.implicit.trial import gradients, increment, sign, trial
+from mpm.implicit.trial import answered, gradients, sign
 from mpm.jit import kernel
-from mpm.materials import response, settled, turning, warmed
+from mpm.materials import turning
 
 
 @kernel
@@ -61,16 +59,8 @@ def assemble_volume(space, body, nodes, u, dt, r, blocks, want):
     E, G, H = np.empty((3, 3, 3, 3)), np.empty((3, 3, 3, 3)), np.empty((3, 3, 3))
     g, wr, t, z, B = np.zeros((M, 3)), np.zeros(M), np.zeros((M, 3)), np.zeros((M, 3)), np.empty((3, 3))
     for p in range(x.shape[0]):
-        A = increment(space, nodes, u, x, p)
-        values, axes, trace, d, size, _, sound = trial(space, body.particles.B, A, extra_strain(spans, p), p)
-        if not sound:
-            return math.inf
-        theta = condition(body.setting, body.thermal, p)
-        elastic = warmed(body.elastic, theta)
-        law = settled(body.flow, body.particles.J[p])
-        thermal = thermal_stress(body.expansion, body.thermal, p, theta)
-        W, share, good = response(elastic, law, trace, d, size, thermal, theta, dt, tau, a)
-        if not good:
+        A, values, axes, elastic, W, share = answered(space, body, nodes, u, p, extra_strain(spans, p), dt, tau, a)
+        if W == math.inf:
             return math.inf
         total += V0[p] * W
         if not want:

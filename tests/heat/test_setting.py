@@ -10,10 +10,12 @@ import sys
 
 import numpy as np
 import pytest
+from numba import config
 from scipy.special import exp1
 
 import mpm
 from mpm.config import ConfigError
+from mpm.materials import Condition, Constant, Sets, value
 from mpm.memory import arrays
 from mpm.runner import run_point
 from mpm.scene.build import build
@@ -121,21 +123,30 @@ def test_in_the_total_frame_and_in_single_precision():
         assert run.series["pressure_mean"] == pytest.approx((1e4 + 2e4 * X) / 0.5 * 0.05, rel=1e-5)
 
 
+def test_between_equal_ends_it_is_that_end():
+    """To the bit, whatever X; and a scene that names no setting stores none."""
+    law = Sets(Constant(50.3), Constant(50.3))
+    assert all(value(law, Condition(350.0, X)) == 50.3 for X in np.random.default_rng(1).random(100))
+    dough = {"density": 1000.0, "elastic": {"hencky": {"E": 1e4, "nu": 0.25}}, "heat": HEAT}
+    body = build(mpm.load(filled(2, output={"every": 0.1}, materials={"dough": dough}))).bodies[0]
+    assert isinstance(body.setting, NoSetting) and not any("setting" in path for path in arrays(body))
+
+
 @pytest.mark.slow
-def test_between_equal_ends_it_changes_no_bit():
-    """And a scene that names no setting stores none."""
+def test_between_equal_ends_it_changes_nothing():
+    """No bit in plain Python; round-off where it is compiled: M is one number to one kernel, one a particle to the other, and each may arrange its
+    divisions as it likes (mpm.lanes: reassoc, arcp, afn; without these three flags the compiled runs are the same to the bit as well)."""
+    close = {"rel": 0, "abs": 0} if config.DISABLE_JIT else {"rel": 1e-12, "abs": 1e-13}
     plain = filled(2, method={"mechanics": "explicit"}, gravity=[0.0, -9.81], output={"every": 0.1})
     plain["materials"]["dough"] |= {"elastic": {"hencky": {"E": {"logistic": {"low": 1e4, "high": 2e4, "at": 340, "width": 5}}, "nu": 0.25}},
                                     "flow": {"ellipse": {"M": 50, "p0": {"porosity": {"initial": 0.3}}, "eta": 10}}}  # fmt: skip
     same = filled(2, method={"mechanics": "explicit"}, gravity=[0.0, -9.81], output={"every": 0.1})
     same["materials"]["dough"] |= {"elastic": plain["materials"]["dough"]["elastic"],
                                    "flow": {"ellipse": {"M": between(50, 50), "p0": {"porosity": {"initial": 0.3}}, "eta": 10}}}  # fmt: skip
-    scene = build(mpm.load(plain))
-    assert isinstance(scene.bodies[0].setting, NoSetting) and not any("setting" in path for path in arrays(scene.bodies))
     one, two = (run_point(mpm.load(scene | {"method": {"mechanics": "explicit", "heat_step": 0.015}})) for scene in (plain, same))
     assert "setting_mean" not in one.series and "setting_mean" in two.series
     for name, values in one.series.items():
-        assert np.array_equal(values, two.series[name]), name
+        assert values == pytest.approx(two.series[name], **close), name
 
 
 def test_it_is_kept_and_sorted_with_the_particles():

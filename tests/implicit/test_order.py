@@ -1,13 +1,18 @@
 """Order in time: a viscous column against the stack of material points that it is, and a column that heat swells against its own limit of small steps."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import mpm
 from mpm.benchmarks.implicit import stack
+from mpm.implicit import drive
+from mpm.outcome import COMPLETED, NO_EQUILIBRIUM, outcome
 from mpm.runner import run_point
+from mpm.scene.build import build
+from mpm.simulation import Clock
 
 COLUMN = Path(__file__).parents[2] / "configs" / "studies" / "viscous_column.yaml"
 
@@ -51,3 +56,21 @@ def test_heat_and_motion_together():
         found.append((run.finals["position_mean_x"], run.finals["temperature_middle"]))
     falls = np.abs(np.diff(found, axis=0))
     assert (np.log2(falls[0] / falls[1]) > 1.8).all(), falls
+
+
+def test_a_named_step_that_fails_is_cut(monkeypatch):
+    """What fails is tried again at a quarter, then the named step is taken up again; where none succeeds the run ends."""
+    tried = []
+
+    def pair(scene, clock, work, dt, warm):
+        tried.append(dt)
+        return 0.0, outcome(NO_EQUILIBRIUM if dt > most else COMPLETED)
+
+    monkeypatch.setattr(drive, "pair", pair)
+    watched = SimpleNamespace(block=lambda *_: outcome(COMPLETED), whole=lambda *_: outcome(COMPLETED), watch=lambda *_: None)
+    for most, right in ((5.0, [40, 10, 2.5, 39.75, 9.9375, 2.484375]), (0.0, [40.0 / 4**k for k in range(7)])):
+        tried.clear()
+        scene = build(swelling(40.0))
+        clock = Clock(scene)
+        found = drive.advance(scene, clock, watched, None, 400.0, None, watched, lambda: len(tried) == 6)
+        assert tried == pytest.approx(right) and found.kind == ("budget" if most else "no_equilibrium")
