@@ -82,6 +82,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
             continue
         told["next"] = scene.step or dt * (factor(scene.implicit, error) if told["last"] > 0 else 1.0)
         told["last"], told["again"] = dt, 0
+        clock.shortest, clock.longest = min(before[1]["shortest"], dt), max(before[1]["longest"], dt)  # not those of its halves
         binding = "time.step" if scene.step else "error of the step"
         clock.bound[binding] = clock.bound.get(binding, 0) + 1
         clock.steps += 1

@@ -74,3 +74,4 @@ def test_a_named_step_that_fails_is_cut(monkeypatch):
         clock = Clock(scene)
         found = drive.advance(scene, clock, watched, None, 400.0, None, watched, lambda: len(tried) == 6)
         assert tried == pytest.approx(right) and found.kind == ("budget" if most else "no_equilibrium")
+        assert (clock.longest, clock.shortest) == ((2.5, 2.484375) if most else (0, np.inf))
