@@ -59,7 +59,7 @@ def measured(case: str, most: float) -> list[dict]:
     else:
         fine = load(file, change)
         right = run_point(load(file, change | {"time.step": str(FINE * fine.time.end)})).finals
-    rows = {setting: {"case": case, "setting": setting, "error": "", "seconds": "", "note": ""} for setting in SETTINGS}
+    rows: dict[str, dict] = {setting: {"case": case, "setting": setting, "error": "", "seconds": "", "note": ""} for setting in SETTINGS}
     spent = dict.fromkeys(SETTINGS, math.inf)
     for turn in range(ROUNDS):
         for setting, row in rows.items():
@@ -80,11 +80,12 @@ def measured(case: str, most: float) -> list[dict]:
 
 
 def draw(rows: list[dict], path: Path) -> None:
-    """A panel a case: error over time, implicit settings joined."""
+    """A panel a case that was measured: error over time, settings of a kind joined."""
+    cases = [case for case in CASES if any(row["case"] == case for row in rows)]
     with style.styled():
         fig = style.figure("Implicit mechanics beside explicit steps: error against time", 4.6)
-        axes = fig.subplots(1, len(CASES), sharey=True)
-        for ax, case in zip(axes, CASES, strict=True):
+        axes = fig.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+        for ax, case in zip(axes, cases, strict=True):
             ax.set(title=case, xscale="log", yscale="log", xlabel="process time [s]")
             for kind, colour in zip(("implicit", "explicit"), style.OKABE_ITO, strict=False):
                 mine = [row for row in rows if row["case"] == case and row["setting"].startswith(kind) and row["error"] != ""]
@@ -101,7 +102,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"{', '.join(CASES)}; all unless said")
     parser.add_argument("--most", type=float, default=600.0, help="seconds from which on a setting is left out")
-    given, table, rows = parser.parse_args(), DOCS / "implicit.csv", []
+    given, table = parser.parse_args(), DOCS / "implicit.csv"
+    rows: list[dict] = []
     again = given.cases or list(CASES)
     if unknown := set(again) - set(CASES):
         parser.error(f"no case {', '.join(sorted(unknown))}; there are {', '.join(CASES)}")
