@@ -20,6 +20,7 @@ from mpm.lanes import (
     like,
     load4,
     load8,
+    load_row,
     log1p,
     logarithm,
     low,
@@ -34,6 +35,8 @@ from mpm.lanes import (
     splat8,
     sqrt,
     store,
+    thirds,
+    three,
 )
 
 
@@ -78,6 +81,25 @@ def test_compiled_equals_plain(real, holes):
     everything.py_func(a, b, plain, real(0.7))
     assert np.allclose(compiled, plain, rtol=4 * np.finfo(real).eps, atol=4 * np.finfo(real).eps, equal_nan=True)
     assert np.array_equal(compiled[48:72], plain[48:72], equal_nan=True) and compiled[115] == a[2]
+
+
+@kernel
+def rows(a, out, number):
+    x = load_row(a, 1)
+    left, centre, right = thirds(x)
+    store(out, 0, fma(like(x, number), x, three(right, centre, left)) - x * x)
+    store(out, 13, centre)
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+def test_rows_touch_twelve_numbers(real):
+    """Wherever a row lives, one vector or two, what lies behind it is neither read into it nor written."""
+    a = np.array([np.nan, *range(1, 13), np.nan], real)
+    compiled, plain = np.full(18, -1, real), np.full(18, -1, real)
+    rows(a, compiled, real(0.5))
+    rows.py_func(a, plain, real(0.5))
+    assert np.array_equal(compiled, plain) and plain[12] == -1 and (plain[13:17] == a[5:9]).all() and plain[17] == -1
+    assert (plain[:12] == 0.5 * a[1:13] + a[[9, 10, 11, 12, 5, 6, 7, 8, 1, 2, 3, 4]] - a[1:13] ** 2).all()
 
 
 def test_a_nan_is_below_nothing():

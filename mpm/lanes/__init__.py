@@ -11,6 +11,8 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
     four(a, b, c, d)                       lanes from numbers
     transposed(a, b, c, d)                 four fours, rows and columns exchanged
     join(a, b), low(a), high(a)            two fours make an eight, and back
+    load_row(array, at)                    twelve numbers: three nodes, a row of a stencil; only for what is done lane by lane, store and thirds
+    three(a, b, c), thirds(row)            three fours make a row, and back
     fma(a, b, c)                           a b + c by `llvm.fmuladd`: one instruction where there is one, two where not (`llvm.fma` would call a library)
     a + b, a - b, a * b, a / b, -a         lane by lane, also with a number, which takes the type of the lanes
     absolute(a), sqrt(a), minimum(a, b), maximum(a, b), floor(a)
@@ -34,7 +36,26 @@ Further files
     order        order and choice over lanes and numbers
 """
 
-from mpm.lanes.access import aligned, four, high, item, join, load4, load8, low, peek, poke, put, splat4, splat8, store, transposed
+from mpm.lanes.access import (
+    aligned,
+    four,
+    high,
+    item,
+    join,
+    load4,
+    load8,
+    load_row,
+    low,
+    peek,
+    poke,
+    put,
+    splat4,
+    splat8,
+    store,
+    thirds,
+    three,
+    transposed,
+)  # fmt: skip
 from mpm.lanes.arithmetic import absolute, floor, fma, like, sqrt
 from mpm.lanes.erf import erf
 from mpm.lanes.functions import expm1, exponential, log1p, logarithm
@@ -43,6 +64,7 @@ from mpm.lanes.order import below, choose, least, maximum, minimum, most, precis
 EIGHT = 8  # particles that pass at once
 
 __all__ = [
-    "EIGHT", "absolute", "aligned", "below", "choose", "erf", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like", "load4",
-    "load8", "log1p", "logarithm", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8", "sqrt", "store", "transposed",
+    "EIGHT", "absolute", "aligned", "below", "choose", "erf", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like",
+    "load4", "load8", "load_row", "log1p", "logarithm", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8", "sqrt",
+    "store", "thirds", "three", "transposed",
 ]  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 
-from mpm.lanes.kinds import LanesType, halved, holds, operation, place, places, pointer, real, same
+from mpm.lanes.kinds import ROW, LanesType, halved, holds, operation, place, places, pointer, real, row_of, same, vectors
 
 
 def aligned(shape, dtype):
@@ -23,6 +23,10 @@ def load8(array, at):
     return array.reshape(-1)[at : at + 8].copy()
 
 
+def load_row(array, at):
+    return array.reshape(-1)[at : at + ROW].copy()
+
+
 def store(array, at, value):
     array.reshape(-1)[at : at + len(value)] = value
 
@@ -36,11 +40,52 @@ operation(load4, lambda array, at: LanesType(array.dtype, 4) if holds(array) els
 operation(load8, lambda array, at: LanesType(array.dtype, 8) if holds(array) else None, types.Array, types.Integer)(load)
 
 
+@operation(load_row, lambda array, at: LanesType(array.dtype, ROW) if holds(array) else None, types.Array, types.Integer, whole=True)
+def load_row_compiled(context, builder, signature, arguments):
+    made, start = signature.return_type, place(context, builder, signature, arguments)
+    if len(made.parts) == 1:
+        return masked(builder, made, start)
+    found = []
+    for first, count in ((0, 8), (8, 4)):
+        part = LanesType(made.dtype, count)
+        at = builder.bitcast(builder.gep(start, [ir.Constant(ir.IntType(64), first)]), part.llvm.as_pointer())
+        found.append(builder.load(at, align=made.dtype.bitwidth // 8))
+    return row_of(builder, made, found)
+
+
+def masked(builder, made, start):
+    """The first numbers of a vector from memory, nothing in its idle lanes: what lies behind is not touched."""
+    width, size = made.llvm.count, made.dtype.bitwidth
+    mask = ir.VectorType(ir.IntType(1), width)
+    at = builder.bitcast(start, made.llvm.as_pointer())
+    kind = ir.FunctionType(made.llvm, [at.type, ir.IntType(32), mask, made.llvm])
+    load = builder.module.declare_intrinsic(f"llvm.masked.load.v{width}f{size}.p0", fnty=kind)
+    kept = ir.Constant(mask, [int(k < made.count) for k in range(width)])
+    return builder.call(load, [at, ir.Constant(ir.IntType(32), size // 8), kept, ir.Constant(made.llvm, None)])
+
+
+def row_from(builder, made, eight, rest):
+    """A row from its first two nodes and the third."""
+    if len(made.parts) > 1:
+        return row_of(builder, made, [eight, rest])
+    nothing = ir.Constant(rest.type, ir.Undefined)
+    return builder.shuffle_vector(eight, builder.shuffle_vector(rest, nothing, places([0, 1, 2, 3, 4, 4, 4, 4])), places(list(range(16))))
+
+
+def nodes_of(builder, kind, row):
+    """The inverse: first two nodes, the third."""
+    if len(kind.parts) > 1:
+        return vectors(builder, kind, row)
+    return [builder.shuffle_vector(row, row, places(list(range(first, last)))) for first, last in ((0, 8), (8, 12))]
+
+
 @operation(store, lambda array, at, a: types.none if holds(array) and isinstance(a, LanesType) and a.dtype == array.dtype else None,
            types.Array, types.Integer, LanesType)  # fmt: skip
 def store_compiled(context, builder, signature, arguments):
-    lanes = signature.args[2]
-    builder.store(arguments[2], pointer(context, builder, signature, arguments, lanes), align=lanes.dtype.bitwidth // 8)
+    lanes, start = signature.args[2], place(context, builder, signature, arguments)
+    for vector in nodes_of(builder, lanes, arguments[2]) if lanes.count == ROW else [arguments[2]]:
+        builder.store(vector, builder.bitcast(start, vector.type.as_pointer()), align=lanes.dtype.bitwidth // 8)
+        start = builder.gep(start, [ir.Constant(ir.IntType(64), vector.type.count)])
     return context.get_dummy_value()
 
 
@@ -117,6 +162,27 @@ def shuffled(first, last):
 operation(join, lambda a, b: LanesType(a.dtype, 2 * a.count) if same(a, b) else None, LanesType, LanesType)(shuffled(0, 4))
 operation(low, halved, LanesType)(shuffled(0, 1))
 operation(high, halved, LanesType)(shuffled(1, 2))
+
+
+def three(a, b, c):
+    return np.concatenate((a, b, c))
+
+
+@operation(three, lambda a, b, c: LanesType(a.dtype, ROW) if same(a, b) == c == a and a.count == 4 else None, *[LanesType] * 3, whole=True)
+def three_compiled(context, builder, signature, arguments):
+    a, b, c = arguments
+    return row_from(builder, signature.return_type, builder.shuffle_vector(a, b, places(list(range(8)))), c)
+
+
+def thirds(row):
+    return row[:4], row[4:8], row[8:]
+
+
+@operation(thirds, lambda row: types.UniTuple(LanesType(row.dtype, 4), 3) if isinstance(row, LanesType) and row.count == ROW else None, LanesType, whole=True)
+def thirds_compiled(context, builder, signature, arguments):
+    eight, third = nodes_of(builder, signature.args[0], arguments[0])
+    first, second = (builder.shuffle_vector(eight, eight, places(list(range(start, start + 4)))) for start in (0, 4))
+    return context.make_tuple(builder, signature.return_type, [first, second, third])
 
 
 def item(a, k):

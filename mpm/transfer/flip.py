@@ -41,14 +41,14 @@ def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, 
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
     slope, tensor = impulse_parts(gradient, chunk)
     c = chunk
-    apart = Chunk(c.none, c.f, slope, tensor, c.v, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
+    apart = Chunk(c.none, c.f, slope, tensor, c.v, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.uv, c.begins, c.packed)
     scatter(space, gradient, x, first, apart, count, force, box)
 
 
 @collect.register(Flip)
 def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force):
     c = chunk
-    changed = Chunk(c.m, c.a, c.A, c.G, c.change, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.packed)
+    changed = Chunk(c.m, c.a, c.A, c.G, c.change, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.uv, c.begins, c.packed)
     gather(space, gradient, x, first, changed, count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 

@@ -1,13 +1,13 @@
 """Chunks packed for the rows of a stencil, and unpacked: from components of eight particles to fours of one particle, by transposing.
 
 Chunk.packed holds a particle a row. To scatter: value at the first node with the mass, growth from node to node by direction, with the basis gradient the
-columns of its tensor. Gathered: velocity, slope by direction, gradient by direction.
+columns of its tensor. Gathered: velocity, moment by direction (see `slope`), gradient by direction.
 """
 
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, fma, high, join, load4, load8, low, splat8, store, transposed
 from mpm.transfer.roles import uses_basis_gradient
-from mpm.transfer.stencils import OFFSET
+from mpm.transfer.stencils import CHUNK, OFFSET, ROWS, WITHIN
 
 FOUR = 4
 
@@ -39,10 +39,10 @@ def unpack(packed, p, k):
 @kernel(inline=True)
 def pack_volume(space, gradient, chunk, count):
     """Value at the first node [m], and what it grows by from node to node, as fours; with the basis gradient its tensor's columns."""
-    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m.shape[0]
+    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, CHUNK
     real = chunk.m.dtype.type
     h, nought = splat8(real(space.h)), splat8(real(0))
-    rows = s.shape[1] * n
+    rows = ROWS * n
     for p in range(0, count, EIGHT):
         x, y, z = load8(s, OFFSET * n + p), load8(s, rows + OFFSET * n + p), load8(s, 2 * rows + OFFSET * n + p)
         xx, xy, xz = load8(A, p), load8(A, n + p), load8(A, 2 * n + p)
@@ -64,10 +64,10 @@ def pack_volume(space, gradient, chunk, count):
 @kernel(inline=True)
 def pack_plane(space, gradient, chunk, count):
     """The same in a plane."""
-    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, chunk.m.shape[0]
+    s, a, A, T, n = chunk.s, chunk.a, chunk.A, chunk.G, CHUNK
     real = chunk.m.dtype.type
     h, nought = splat8(real(space.h)), splat8(real(0))
-    rows = s.shape[1] * n
+    rows = ROWS * n
     for p in range(0, count, EIGHT):
         x, y = load8(s, OFFSET * n + p), load8(s, rows + OFFSET * n + p)
         xx, xy, yx, yy = load8(A, p), load8(A, n + p), load8(A, 2 * n + p), load8(A, 3 * n + p)
@@ -81,60 +81,66 @@ def pack_plane(space, gradient, chunk, count):
 
 
 @kernel(inline=True)
-def columns_plane(target, k, p, n, column):
+def columns_plane(target, k, p, column):
     """Column k of a tensor of eight particles from p, from components (x, y, ...)."""
-    store(target, k * n + p, column[0])
-    store(target, (2 + k) * n + p, column[1])
+    store(target, k * CHUNK + p, column[0])
+    store(target, (2 + k) * CHUNK + p, column[1])
 
 
 @kernel(inline=True)
-def columns_volume(target, k, p, n, column):
+def columns_volume(target, k, p, column):
     """The same in three directions."""
-    store(target, k * n + p, column[0])
-    store(target, (3 + k) * n + p, column[1])
-    store(target, (6 + k) * n + p, column[2])
+    store(target, k * CHUNK + p, column[0])
+    store(target, (3 + k) * CHUNK + p, column[1])
+    store(target, (6 + k) * CHUNK + p, column[2])
+
+
+@kernel(inline=True)
+def slope(space, chunk, k, p, v, moment):
+    """Column k of the slope, 4/h^2 sum w u d_k, from v and the moment sum w u j: node j = -1, 0, 1 lies at d = h (j - f)."""
+    scale, f = splat8(chunk.m.dtype.type(4.0 / space.h)), load8(chunk.s, (k * ROWS + WITHIN) * CHUNK + p)
+    return scale * fma(-f, v[0], moment[0]), scale * fma(-f, v[1], moment[1]), scale * fma(-f, v[2], moment[2])
 
 
 @kernel(inline=True)
 def same_gradient(gradient, chunk, count):
     """With the MLS gradient it is the slope: copied where it has an array of its own."""
     if not uses_basis_gradient(gradient) and chunk.L.ctypes.data != chunk.C.ctypes.data:
-        n = chunk.m.shape[0]
         for k in range(chunk.v.shape[0] * chunk.v.shape[0]):
             for p in range(0, count, EIGHT):
-                store(chunk.L, k * n + p, load8(chunk.C, k * n + p))
+                store(chunk.L, k * CHUNK + p, load8(chunk.C, k * CHUNK + p))
 
 
 @kernel(inline=True)
-def unpack_plane(gradient, chunk, count):
+def unpack_plane(space, gradient, chunk, count):
     """What was gathered, to v, C and L of the chunk."""
-    packed, n = chunk.packed, chunk.m.shape[0]
+    packed = chunk.packed
     for p in range(0, count, EIGHT):
         v = unpack(packed, p, 0)
         store(chunk.v, p, v[0])
-        store(chunk.v, n + p, v[1])
-        columns_plane(chunk.C, 0, p, n, unpack(packed, p, 1))
-        columns_plane(chunk.C, 1, p, n, unpack(packed, p, 2))
+        store(chunk.v, CHUNK + p, v[1])
+        columns_plane(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
+        columns_plane(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
         if uses_basis_gradient(gradient):
-            columns_plane(chunk.L, 0, p, n, unpack(packed, p, 3))
-            columns_plane(chunk.L, 1, p, n, unpack(packed, p, 4))
+            columns_plane(chunk.L, 0, p, unpack(packed, p, 3))
+            columns_plane(chunk.L, 1, p, unpack(packed, p, 4))
     same_gradient(gradient, chunk, count)
 
 
 @kernel(inline=True)
-def unpack_volume(gradient, chunk, count):
+def unpack_volume(space, gradient, chunk, count):
     """The same in three directions."""
-    packed, n = chunk.packed, chunk.m.shape[0]
+    packed = chunk.packed
     for p in range(0, count, EIGHT):
         v = unpack(packed, p, 0)
         store(chunk.v, p, v[0])
-        store(chunk.v, n + p, v[1])
-        store(chunk.v, 2 * n + p, v[2])
-        columns_volume(chunk.C, 0, p, n, unpack(packed, p, 1))
-        columns_volume(chunk.C, 1, p, n, unpack(packed, p, 2))
-        columns_volume(chunk.C, 2, p, n, unpack(packed, p, 3))
+        store(chunk.v, CHUNK + p, v[1])
+        store(chunk.v, 2 * CHUNK + p, v[2])
+        columns_volume(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
+        columns_volume(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
+        columns_volume(chunk.C, 2, p, slope(space, chunk, 2, p, v, unpack(packed, p, 3)))
         if uses_basis_gradient(gradient):
-            columns_volume(chunk.L, 0, p, n, unpack(packed, p, 4))
-            columns_volume(chunk.L, 1, p, n, unpack(packed, p, 5))
-            columns_volume(chunk.L, 2, p, n, unpack(packed, p, 6))
+            columns_volume(chunk.L, 0, p, unpack(packed, p, 4))
+            columns_volume(chunk.L, 1, p, unpack(packed, p, 5))
+            columns_volume(chunk.L, 2, p, unpack(packed, p, 6))
     same_gradient(gradient, chunk, count)

@@ -6,10 +6,9 @@ import numpy as np
 
 from mpm.jit import kernel, role
 from mpm.lanes import EIGHT, peek, poke
-from mpm.transfer.stencils import ROWS
+from mpm.transfer.stencils import CHUNK, ROWS
 
 APART = 3  # cache lines between arrays of a chunk
-CHUNK = 64  # particles that pass together: their scratch (45 kB in 3-D float64) stays close to the first-level cache
 
 
 class Mls(NamedTuple):
@@ -40,6 +39,8 @@ class Chunk(NamedTuple):
     s: np.ndarray  # (D, ROWS, n) quadratic stencils (stencils.py)
     reach: np.ndarray  # (3, 2) nodes that a gather or a scatter touches
     none: np.ndarray  # (n,) zeros: the mass of an impulse
+    uv: np.ndarray  # (9, n) products of the weights of the first two directions, in volumes
+    begins: np.ndarray  # (n,) where a particle's stencil begins among the numbers of the nodes
     packed: np.ndarray  # (n, 4 D + 4), or (n, 8 D + 4) with the basis gradient: what rows.py packs, a particle a row
 
 
@@ -125,8 +126,8 @@ def new_chunk(D, like, own_gradient, own_velocity):
     """
     line = 64 // like.itemsize
     wide = (8 if own_gradient else 4) * D + 4
-    rows = 15 + 8 * D + 7 * D * D + D * ROWS + wide  # of CHUNK numbers: at least as many as are taken below
-    pool = np.zeros(rows * CHUNK + 18 * (APART + 1) * line, like.dtype)
+    rows = 24 + 8 * D + 7 * D * D + D * ROWS + wide  # of CHUNK numbers: at least as many as are taken below
+    pool = np.zeros(rows * CHUNK + 19 * (APART + 1) * line, like.dtype)
     at = -pool.ctypes.data % 64 // like.itemsize
     n, step, vector, tensor = CHUNK, APART * line, D * CHUNK, D * D * CHUNK
     m, at = pool[at : at + n], at + n + step
@@ -141,6 +142,7 @@ def new_chunk(D, like, own_gradient, own_velocity):
     S, at = pool[at : at + tensor].reshape(D, D, n), at + tensor + step
     work, at = pool[at : at + 12 * n].reshape(12, n), at + 12 * n + step
     stencils, at = pool[at : at + D * ROWS * n].reshape(D, ROWS, n), at + D * ROWS * n + step
+    products, at = pool[at : at + 9 * n].reshape(9, n), at + 9 * n + step
     packed, at = pool[at : at + wide * n].reshape(n, wide), at + wide * n + step
     L, u, U, change = C, v, C, v
     if own_gradient:
@@ -149,7 +151,7 @@ def new_chunk(D, like, own_gradient, own_velocity):
         u, at = pool[at : at + vector].reshape(D, n), at + vector + step
         U, at = pool[at : at + tensor].reshape(D, D, n), at + tensor + step
         change = pool[at : at + vector].reshape(D, n)
-    return Chunk(m, a, A, T, v, change, C, L, u, U, f, S, work, place, stencils, np.zeros((3, 2), np.int64), none, packed)
+    return Chunk(m, a, A, T, v, change, C, L, u, U, f, S, work, place, stencils, np.zeros((3, 2), np.int64), none, products, np.zeros(CHUNK, np.int64), packed)
 
 
 @kernel(inline=True)

@@ -1,93 +1,117 @@
 """Scatter and gather of quadratic B-splines in planes and volumes, a stencil row at once.
 
-A node is four numbers [px py pz m], so the three nodes of a row are twelve in a row: lanes of eight (two nodes) and of four (the third). What a particle
-puts on a row is v_j (u_i (c + i X) + j u_i Y) times fixed lanes; gather is its transpose, summed row by row, plane by plane, then in the row.
+A node is four numbers [px py pz m], so the three nodes of a row are twelve in a row (mpm.lanes: load_row). What a particle puts on a row is
+v_j (u_i (c + i X) + j u_i Y) times fixed lanes. Gather sums row by row, plane by plane, then in the row; of a direction it finds the sum and the moment,
+sum w u j over nodes j = -1, 0, 1, of which packing.py makes the slope.
 The rows of a stencil stay in registers while consecutive particles share them.
 """
 
 from mpm.jit import kernel
-from mpm.lanes import fma, high, join, load4, load8, low, splat4, splat8, store
+from mpm.lanes import EIGHT, fma, like, load4, load8, load_row, peek, splat4, store, thirds, three
 from mpm.transfer.packing import pack_plane, pack_volume, unpack_plane, unpack_volume
 from mpm.transfer.roles import uses_basis_gradient
-from mpm.transfer.stencils import FIRST, B, G, W
+from mpm.transfer.stencils import CHUNK, FIRST, ROWS, G, W
+
+Y, Z = ROWS * CHUNK, 2 * ROWS * CHUNK  # where the stencils of the second and third direction begin
+
+
+@kernel(inline=True)
+def begin_plane(space, chunk, count):
+    """Where the stencil of each particle begins among the numbers of the nodes: beforehand, since loads of rows would wait for it."""
+    s, begins = chunk.s, chunk.begins
+    for p in range(count):
+        begins[p] = 4 * (int(peek(s, FIRST * CHUNK + p)) * space.n1 + int(peek(s, Y + FIRST * CHUNK + p)))
+
+
+@kernel(inline=True)
+def begin_volume(space, chunk, count):
+    """The same in three directions, and the products of the weights across rows."""
+    s, begins = chunk.s, chunk.begins
+    for p in range(0, count, EIGHT):
+        for i in range(3):
+            u = load8(s, (W + i) * CHUNK + p)
+            for j in range(3):
+                store(chunk.uv, (3 * i + j) * CHUNK + p, u * load8(s, Y + (W + j) * CHUNK + p))
+    for p in range(count):
+        row = int(peek(s, FIRST * CHUNK + p)) * space.n1 + int(peek(s, Y + FIRST * CHUNK + p))
+        begins[p] = 4 * (row * space.n2 + int(peek(s, Z + FIRST * CHUNK + p)))
 
 
 @kernel(inline=True)
 def zeros(nodes):
-    """Three rows of a plane of the stencil: lanes of eight and of four each."""
-    nought8, nought4 = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0))
-    return nought8, nought4, nought8, nought4, nought8, nought4
+    """Three rows of a plane of the stencil."""
+    nought = splat4(nodes.dtype.type(0))
+    row = three(nought, nought, nought)
+    return row, row, row
 
 
 @kernel(inline=True)
-def added(rows, s, p, j, first, eight, rest, Y8, Y4):
-    """Rows += weight times (row + j Y); the weights stand from row `first` of the stencils, in direction j."""
-    a8, a4, b8, b4, c8, c4 = rows
-    w, x, y = s[j, first, p], s[j, first + 1, p], s[j, first + 2, p]
-    second8, second4 = eight + Y8, rest + Y4
-    return (
-        fma(splat8(w), eight, a8), fma(splat4(w), rest, a4), fma(splat8(x), second8, b8), fma(splat4(x), second4, b4),
-        fma(splat8(y), second8 + Y8, c8), fma(splat4(y), second4 + Y4, c4),
-    )  # fmt: skip
+def weights(s, at):
+    """Three weights of a particle: row `at` of the stencils and the two after it."""
+    return peek(s, at), peek(s, at + CHUNK), peek(s, at + 2 * CHUNK)
+
+
+@kernel(inline=True)
+def weights_along(s, at):
+    """The same along a row."""
+    return three(splat4(peek(s, at)), splat4(peek(s, at + CHUNK)), splat4(peek(s, at + 2 * CHUNK)))
+
+
+@kernel(inline=True)
+def alike(packed, at):
+    """The same four lanes on the three nodes of a row."""
+    a = load4(packed, at)
+    return three(a, a, a)
+
+
+@kernel(inline=True)
+def thrice(row):
+    return row, row, row
+
+
+@kernel(inline=True)
+def growing(packed, at, step):
+    """a, a + Z and a + 2 Z on the three nodes of a row."""
+    real = packed.dtype.type
+    return fma(three(splat4(real(0)), splat4(real(1)), splat4(real(2))), alike(packed, step), alike(packed, at))
+
+
+@kernel(inline=True)
+def added(sums, w, rows):
+    """Sums += w_j row_j."""
+    return fma(like(rows[0], w[0]), rows[0], sums[0]), fma(like(rows[1], w[1]), rows[1], sums[1]), fma(like(rows[2], w[2]), rows[2], sums[2])
 
 
 @kernel(inline=True)
 def flush(nodes, at, step, rows):
     """Nodes += three rows, `step` apart."""
-    a8, a4, b8, b4, c8, c4 = rows
-    store(nodes, at, load8(nodes, at) + a8)
-    store(nodes, at + 8, load4(nodes, at + 8) + a4)
-    at += step
-    store(nodes, at, load8(nodes, at) + b8)
-    store(nodes, at + 8, load4(nodes, at + 8) + b4)
-    at += step
-    store(nodes, at, load8(nodes, at) + c8)
-    store(nodes, at + 8, load4(nodes, at + 8) + c4)
-
-
-@kernel(inline=True)
-def in_row(a, weights8, weights4):
-    """The same four lanes on the three nodes of a row, weighted: (eight, four)."""
-    return join(a, a) * weights8, a * weights4
-
-
-@kernel(inline=True)
-def row_of(a, step, weights8, weights4):
-    """a, a + step and a + 2 step on the three nodes of a row, weighted: (eight, four)."""
-    second = a + step
-    return join(a, second) * weights8, (second + step) * weights4
-
-
-@kernel(inline=True)
-def weights(s, d, first, p):
-    """Three weights of direction d along a row."""
-    return join(splat4(s[d, first, p]), splat4(s[d, first + 1, p])), splat4(s[d, first + 2, p])
+    store(nodes, at, load_row(nodes, at) + rows[0])
+    store(nodes, at + step, load_row(nodes, at + step) + rows[1])
+    store(nodes, at + 2 * step, load_row(nodes, at + 2 * step) + rows[2])
 
 
 @kernel(inline=True)
 def scatter_plane(space, gradient, chunk, count, nodes):
     """The particles of a chunk on to the nodes (n, 4) of a plane."""
     pack_plane(space, gradient, chunk, count)
-    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
-    nought8, nought4, step = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0)), 4 * space.n1
+    begin_plane(space, chunk, count)
+    s, begins, packed, wide, step = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1], 4 * space.n1
     rows, last = zeros(nodes), -1
     for p in range(count):
-        at = 4 * (int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p]))
+        at = begins[p]
         if at != last:
             if last >= 0:
                 flush(nodes, last, step, rows)
             rows, last = zeros(nodes), at
         mine = p * wide
-        w8, w4 = weights(s, 1, W, p)
-        eight, rest = row_of(load4(packed, mine), load4(packed, mine + 8), w8, w4)
-        X8, X4 = in_row(load4(packed, mine + 4), w8, w4)
+        w = weights_along(s, Y + W * CHUNK + p)
+        row = growing(packed, mine, mine + 8) * w
         if uses_basis_gradient(gradient):
-            g8, g4 = weights(s, 1, G, p)
-            gy8, gy4 = in_row(load4(packed, mine + 16), g8, g4)
-            gx8, gx4 = in_row(load4(packed, mine + 12), w8, w4)
-            eight, rest = eight + gy8, rest + gy4
-            rows = added(rows, s, p, 0, G, gx8, gx4, nought8, nought4)
-        rows = added(rows, s, p, 0, W, eight, rest, X8, X4)
+            row = row + alike(packed, mine + 16) * weights_along(s, Y + G * CHUNK + p)
+            rows = added(rows, weights(s, G * CHUNK + p), thrice(alike(packed, mine + 12) * w))
+        X = alike(packed, mine + 4) * w
+        second = row + X
+        rows = added(rows, weights(s, W * CHUNK + p), (row, second, second + X))
     flush(nodes, last, step, rows)
 
 
@@ -95,12 +119,12 @@ def scatter_plane(space, gradient, chunk, count, nodes):
 def scatter_volume(space, gradient, chunk, count, nodes):
     """The particles of a chunk on to the nodes (n, 4) of a volume."""
     pack_volume(space, gradient, chunk, count)
-    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
-    nought8, nought4 = splat8(nodes.dtype.type(0)), splat4(nodes.dtype.type(0))
+    begin_volume(space, chunk, count)
+    s, begins, packed, wide = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1]
     step, plane = 4 * space.n2, 4 * space.n1 * space.n2
     front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), -1
     for p in range(count):
-        at = 4 * ((int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p])) * space.n2 + int(s[2, FIRST, p]))
+        at = begins[p]
         if at != last:
             if last >= 0:
                 flush(nodes, last, step, front)
@@ -108,108 +132,91 @@ def scatter_volume(space, gradient, chunk, count, nodes):
                 flush(nodes, last + 2 * plane, step, back)
             front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), at
         mine = p * wide
-        w8, w4 = weights(s, 2, W, p)
-        eight, rest = row_of(load4(packed, mine), load4(packed, mine + 12), w8, w4)
-        X8, X4 = in_row(load4(packed, mine + 4), w8, w4)
-        Y8, Y4 = in_row(load4(packed, mine + 8), w8, w4)
+        w, uv = weights_along(s, Z + W * CHUNK + p), chunk.uv
+        row, X, rowY = growing(packed, mine, mine + 12) * w, alike(packed, mine + 4) * w, alike(packed, mine + 8) * w
         if uses_basis_gradient(gradient):
-            g8, g4 = weights(s, 2, G, p)
-            gz8, gz4 = in_row(load4(packed, mine + 24), g8, g4)
-            gx8, gx4 = in_row(load4(packed, mine + 16), w8, w4)
-            gy8, gy4 = in_row(load4(packed, mine + 20), w8, w4)
-            eight, rest = eight + gz8, rest + gz4
-            u8, u4, v8, v4 = splat8(s[0, G, p]), splat4(s[0, G, p]), splat8(s[0, W, p]), splat4(s[0, W, p])
-            front = added(front, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
-            front = added(front, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
-            u8, u4, v8, v4 = splat8(s[0, G + 1, p]), splat4(s[0, G + 1, p]), splat8(s[0, W + 1, p]), splat4(s[0, W + 1, p])
-            middle = added(middle, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
-            middle = added(middle, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
-            u8, u4, v8, v4 = splat8(s[0, G + 2, p]), splat4(s[0, G + 2, p]), splat8(s[0, W + 2, p]), splat4(s[0, W + 2, p])
-            back = added(back, s, p, 1, W, u8 * gx8, u4 * gx4, nought8, nought4)
-            back = added(back, s, p, 1, G, v8 * gy8, v4 * gy4, nought8, nought4)
-        u8, u4 = splat8(s[0, W, p]), splat4(s[0, W, p])
-        front = added(front, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
-        eight, rest, u8, u4 = eight + X8, rest + X4, splat8(s[0, W + 1, p]), splat4(s[0, W + 1, p])
-        middle = added(middle, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
-        eight, rest, u8, u4 = eight + X8, rest + X4, splat8(s[0, W + 2, p]), splat4(s[0, W + 2, p])
-        back = added(back, s, p, 1, W, u8 * eight, u4 * rest, u8 * Y8, u4 * Y4)
+            row = row + alike(packed, mine + 24) * weights_along(s, Z + G * CHUNK + p)
+            gx, gy = alike(packed, mine + 16) * w, alike(packed, mine + 20) * w
+            u, v, U, V = weights(s, W * CHUNK + p), weights(s, Y + W * CHUNK + p), weights(s, G * CHUNK + p), weights(s, Y + G * CHUNK + p)
+            front = added(added(front, v, thrice(like(gx, U[0]) * gx)), V, thrice(like(gy, u[0]) * gy))
+            middle = added(added(middle, v, thrice(like(gx, U[1]) * gx)), V, thrice(like(gy, u[1]) * gy))
+            back = added(added(back, v, thrice(like(gx, U[2]) * gx)), V, thrice(like(gy, u[2]) * gy))
+        second = row + rowY
+        rows = row, second, second + rowY
+        front = added(front, weights(uv, p), rows)
+        rows = rows[0] + X, rows[1] + X, rows[2] + X
+        middle = added(middle, weights(uv, 3 * CHUNK + p), rows)
+        rows = rows[0] + X, rows[1] + X, rows[2] + X
+        back = added(back, weights(uv, 6 * CHUNK + p), rows)
     flush(nodes, last, step, front)
     flush(nodes, last + plane, step, middle)
     flush(nodes, last + 2 * plane, step, back)
 
 
 @kernel(inline=True)
-def along(eight, rest, w0, w1, w2):
-    """Sum over the nodes of a row."""
-    return fma(splat4(w0), low(eight), fma(splat4(w1), high(eight), splat4(w2) * rest))
+def sum_and_moment(u, w):
+    """(sum w_j u_j, sum w_j u_j j) of three u_j, j = -1, 0, 1."""
+    first, third = like(u[0], w[0]) * u[0], like(u[2], w[2]) * u[2]
+    return fma(like(u[1], w[1]), u[1], first + third), third - first
+
+
+@kernel(inline=True)
+def summed(u, w):
+    """sum w_j u_j of three."""
+    return fma(like(u[0], w[0]), u[0], fma(like(u[1], w[1]), u[1], like(u[2], w[2]) * u[2]))
+
+
+@kernel(inline=True)
+def load_rows(nodes, at, step):
+    """Three rows of nodes, `step` apart."""
+    return load_row(nodes, at), load_row(nodes, at + step), load_row(nodes, at + 2 * step)
 
 
 @kernel(inline=True)
 def gather_plane(space, gradient, chunk, count, nodes):
-    """Velocity, slope and gradient of the particles of a chunk in a plane."""
-    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
-    nought = nodes.dtype.type(0)
+    """Velocity, moments and gradient of the particles of a chunk in a plane."""
+    begin_plane(space, chunk, count)
+    s, begins, packed, wide, step = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1], 4 * space.n1
     for p in range(count):
-        v8, X8, gx8 = splat8(nought), splat8(nought), splat8(nought)
-        v4, X4, gx4 = splat4(nought), splat4(nought), splat4(nought)
-        at = 4 * (int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p]))
-        for i in range(3):
-            eight, rest, w, b = load8(nodes, at), load4(nodes, at + 8), s[0, W + i, p], s[0, B + i, p]
-            v8, v4 = fma(splat8(w), eight, v8), fma(splat4(w), rest, v4)
-            X8, X4 = fma(splat8(b), eight, X8), fma(splat4(b), rest, X4)
-            if uses_basis_gradient(gradient):
-                g = s[0, G + i, p]
-                gx8, gx4 = fma(splat8(g), eight, gx8), fma(splat4(g), rest, gx4)
-            at += 4 * space.n1
-        w0, w1, w2 = s[1, W, p], s[1, W + 1, p], s[1, W + 2, p]
-        mine = p * wide
-        store(packed, mine, along(v8, v4, w0, w1, w2))
-        store(packed, mine + 4, along(X8, X4, w0, w1, w2))
-        store(packed, mine + 8, along(v8, v4, s[1, B, p], s[1, B + 1, p], s[1, B + 2, p]))
+        at = begins[p]
+        rows, w, mine = load_rows(nodes, at, step), weights(s, Y + W * CHUNK + p), p * wide
+        v, X = sum_and_moment(rows, weights(s, W * CHUNK + p))
+        v = thirds(v)
+        value, moment = sum_and_moment(v, w)
+        store(packed, mine, value)
+        store(packed, mine + 4, summed(thirds(X), w))
+        store(packed, mine + 8, moment)
         if uses_basis_gradient(gradient):
-            store(packed, mine + 12, along(gx8, gx4, w0, w1, w2))
-            store(packed, mine + 16, along(v8, v4, s[1, G, p], s[1, G + 1, p], s[1, G + 2, p]))
-    unpack_plane(gradient, chunk, count)
+            store(packed, mine + 12, summed(thirds(summed(rows, weights(s, G * CHUNK + p))), w))
+            store(packed, mine + 16, summed(v, weights(s, Y + G * CHUNK + p)))
+    unpack_plane(space, gradient, chunk, count)
 
 
 @kernel(inline=True)
 def gather_volume(space, gradient, chunk, count, nodes):
-    """Velocity, slope and gradient of the particles of a chunk in a volume."""
-    s, packed, wide = chunk.s, chunk.packed, chunk.packed.shape[1]
-    nought = nodes.dtype.type(0)
+    """The same in a volume."""
+    begin_volume(space, chunk, count)
+    s, begins, packed, wide = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1]
+    step, plane = 4 * space.n2, 4 * space.n1 * space.n2
     for p in range(count):
-        v8, X8, Y8, gx8, gy8 = splat8(nought), splat8(nought), splat8(nought), splat8(nought), splat8(nought)
-        v4, X4, Y4, gx4, gy4 = splat4(nought), splat4(nought), splat4(nought), splat4(nought), splat4(nought)
-        plane = 4 * ((int(s[0, FIRST, p]) * space.n1 + int(s[1, FIRST, p])) * space.n2 + int(s[2, FIRST, p]))
-        for i in range(3):
-            sum8, slope8, grad8 = splat8(nought), splat8(nought), splat8(nought)
-            sum4, slope4, grad4 = splat4(nought), splat4(nought), splat4(nought)
-            at = plane
-            for j in range(3):
-                eight, rest, w, b = load8(nodes, at), load4(nodes, at + 8), s[1, W + j, p], s[1, B + j, p]
-                sum8, sum4 = fma(splat8(w), eight, sum8), fma(splat4(w), rest, sum4)
-                slope8, slope4 = fma(splat8(b), eight, slope8), fma(splat4(b), rest, slope4)
-                if uses_basis_gradient(gradient):
-                    g = s[1, G + j, p]
-                    grad8, grad4 = fma(splat8(g), eight, grad8), fma(splat4(g), rest, grad4)
-                at += 4 * space.n2
-            w, b = s[0, W + i, p], s[0, B + i, p]
-            v8, v4 = fma(splat8(w), sum8, v8), fma(splat4(w), sum4, v4)
-            X8, X4 = fma(splat8(b), sum8, X8), fma(splat4(b), sum4, X4)
-            Y8, Y4 = fma(splat8(w), slope8, Y8), fma(splat4(w), slope4, Y4)
-            if uses_basis_gradient(gradient):
-                g = s[0, G + i, p]
-                gx8, gx4 = fma(splat8(g), sum8, gx8), fma(splat4(g), sum4, gx4)
-                gy8, gy4 = fma(splat8(w), grad8, gy8), fma(splat4(w), grad4, gy4)
-            plane += 4 * space.n1 * space.n2
-        w0, w1, w2 = s[2, W, p], s[2, W + 1, p], s[2, W + 2, p]
-        mine = p * wide
-        store(packed, mine, along(v8, v4, w0, w1, w2))
-        store(packed, mine + 4, along(X8, X4, w0, w1, w2))
-        store(packed, mine + 8, along(Y8, Y4, w0, w1, w2))
-        store(packed, mine + 12, along(v8, v4, s[2, B, p], s[2, B + 1, p], s[2, B + 2, p]))
+        at = begins[p]
+        w, uv = weights(s, Z + W * CHUNK + p), chunk.uv
+        front, middle, back = load_rows(nodes, at, step), load_rows(nodes, at + plane, step), load_rows(nodes, at + 2 * plane, step)
+        (f, fY), (m, mY), (b, bY) = (
+            sum_and_moment(front, weights(uv, p)), sum_and_moment(middle, weights(uv, 3 * CHUNK + p)), sum_and_moment(back, weights(uv, 6 * CHUNK + p))
+        )  # fmt: skip
+        sums, X = f + b + m, b - f
+        row, mine = thirds(sums), p * wide
+        value, moment = sum_and_moment(row, w)
+        store(packed, mine, value)
+        store(packed, mine + 4, summed(thirds(X), w))
+        store(packed, mine + 8, summed(thirds(fY + mY + bY), w))
+        store(packed, mine + 12, moment)
         if uses_basis_gradient(gradient):
-            store(packed, mine + 16, along(gx8, gx4, w0, w1, w2))
-            store(packed, mine + 20, along(gy8, gy4, w0, w1, w2))
-            store(packed, mine + 24, along(v8, v4, s[2, G, p], s[2, G + 1, p], s[2, G + 2, p]))
-    unpack_volume(gradient, chunk, count)
+            v, V = weights(s, Y + W * CHUNK + p), weights(s, Y + G * CHUNK + p)
+            gx = summed((summed(front, v), summed(middle, v), summed(back, v)), weights(s, G * CHUNK + p))
+            gy = summed((summed(front, V), summed(middle, V), summed(back, V)), weights(s, W * CHUNK + p))
+            store(packed, mine + 16, summed(thirds(gx), w))
+            store(packed, mine + 20, summed(thirds(gy), w))
+            store(packed, mine + 24, summed(row, weights(s, Z + G * CHUNK + p)))
+    unpack_volume(space, gradient, chunk, count)
