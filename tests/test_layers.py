@@ -29,7 +29,7 @@ LAYERS = {
 PEERS = {
     "compiling": {"cache", "fingerprint"}, "linking": {"compiling", "shortcuts"},
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
-    "transfer": {"basis"}, "heat": {"materials"},  # spreads weights; laws of temperature
+    "transfer": {"basis", "boundary"}, "heat": {"materials"},  # spreads weights, counts directions; laws of temperature
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards", "warming"}, "observe": {"fields"},

@@ -204,7 +204,7 @@ def to_velocity(nodes, D, blocks, words, begin, end, gravity, dt):
 @kernel(inline=True)
 def move(space, x, chunk, first, count, dt, shake, report):
     """x += dt sum w v_i+ (and `shake`: dither.py), also in chunk.place. A particle whose stencil would leave the nodes ends the run; a NaN is no position."""
-    shape, inside, D, n, real = extents(space), room(space.basis), x.shape[1], chunk.m.shape[0], x.dtype.type
+    shape, inside, D, n, real = extents(space), room(space.basis), directions(space), CHUNK, x.dtype.type
     place, step, speed, good, even = chunk.place, splat8(real(dt)), splat8(real(0)), splat8(real(1)), splat8(real(shake))
     for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
         for c in range(D):

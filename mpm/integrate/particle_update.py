@@ -8,6 +8,7 @@ Then what is scattered next: momentum m v, slope m C and the impulse -dt V0 tau 
 import math
 
 from mpm.basis import inverse_moment
+from mpm.boundary import directions
 from mpm.heat.local import heat_locally, latch, thermal_stress
 from mpm.heat.setting import condition
 from mpm.integrate import stress_neo_hookean  # noqa: F401 - registers the law
@@ -19,7 +20,7 @@ from mpm.materials import flow, settled, stress, warmed
 from mpm.outcome import RETURN_MAP
 from mpm.state import Axisymmetric, Line, Plane, Volume
 from mpm.tensors import dilation1, push1
-from mpm.transfer import uses_basis_gradient
+from mpm.transfer import CHUNK, uses_basis_gradient
 
 
 @role(inline=True)
@@ -31,7 +32,7 @@ def respond(space, gradient, body, chunk, first, count, dt, next_dt, report):
 @kernel(inline=True)
 def load_chunk(space, gradient, particles, chunk, first, count, dt):
     """Momentum m v, its slope m C and the impulse -dt V0 tau for the next scatter; tau stands in chunk.S."""
-    D, n, real = chunk.a.shape[0], chunk.m.shape[0], chunk.m.dtype.type
+    D, n, real = directions(space), CHUNK, chunk.m.dtype.type
     scale = real(-dt) if uses_basis_gradient(gradient) else real(-dt * inverse_moment(space.basis) / (space.h * space.h))
     weight = chunk.f[0]  # V0, until the last loop
     for p in range(count):

@@ -7,6 +7,7 @@ from mpm.jit import kernel
 from mpm.lanes import EIGHT, absolute, below, least, load8, maximum, most, peek, poke, splat8, store
 from mpm.outcome import INVERTED, OVERSTRETCHED
 from mpm.tensors import dilation2, dilation3, push2, push3
+from mpm.transfer import CHUNK
 
 CODE, PARTICLE, STEP, SPEED, RATE, STRAIN, SWELL, HEATED, DISSIPATED, WORKED, SWELLED, SOURCED, REPORT = range(13)  # places in the report
 LARGEST_INCREMENT = 0.5  # largest entry of dt grad v
@@ -43,7 +44,7 @@ def largest_of(A):
 @kernel(inline=True)
 def rest(chunk, count, K):
     """Lanes behind the last particle are at rest."""
-    e, n = chunk.e, chunk.e.shape[1]
+    e, n = chunk.e, CHUNK
     for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
         for k in range(K):
             poke(e, k * n + p, 0.0)
@@ -56,7 +57,7 @@ def rest(chunk, count, K):
 @kernel(inline=True)
 def deliver_plane(particles, chunk, first, count):
     """B of the chunk's particles from rows 0..3 of chunk.e."""
-    e, B, n = chunk.e, particles.B, chunk.e.shape[1]
+    e, B, n = chunk.e, particles.B, CHUNK
     for p in range(count):
         at = 4 * (first + p)
         poke(B, at, peek(e, p))
@@ -68,7 +69,7 @@ def deliver_plane(particles, chunk, first, count):
 @kernel(inline=True)
 def deliver_volume(particles, chunk, first, count):
     """B of the chunk's particles from rows 0..5 of chunk.e."""
-    e, B, n = chunk.e, particles.B, chunk.e.shape[1]
+    e, B, n = chunk.e, particles.B, CHUNK
     for p in range(count):
         at = 6 * (first + p)
         poke(B, at, peek(e, p))
@@ -93,13 +94,13 @@ def admit(particles, chunk, first, count, dt, rate, swell, good, report):
                     largest = entry if not entry <= largest else largest
             guard(report, largest, chunk.e[GROW, p], chunk.e[JACOBIAN, p], 0.0, first + p)
     for p in range(count):
-        poke(particles.J, first + p, peek(chunk.e, JACOBIAN * chunk.e.shape[1] + p))
+        poke(particles.J, first + p, peek(chunk.e, JACOBIAN * CHUNK + p))
 
 
 @kernel(inline=True)
 def strain_plane(particles, chunk, first, count, dt, report):
     """Trial B in rows 0..3 of chunk.e (xx yy zz xy), GROW and J; chunk.e[HOOP] holds the rate of hoop strain."""
-    e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
+    e, L, n, real = chunk.e, chunk.L, CHUNK, chunk.e.dtype.type
     step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(LARGEST_INCREMENT)), splat8(real(1e-3)), splat8(real(1e3))
     for p in range(count):
         at = 4 * (first + p)
@@ -130,7 +131,7 @@ def strain_plane(particles, chunk, first, count, dt, report):
 @kernel(inline=True)
 def strain_volume(particles, chunk, first, count, dt, report):
     """Trial B in rows 0..5 of chunk.e (xx yy zz xy yz xz), GROW and J."""
-    e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
+    e, L, n, real = chunk.e, chunk.L, CHUNK, chunk.e.dtype.type
     step, one, largest_increment, smallest, greatest = splat8(real(dt)), splat8(real(1)), splat8(real(LARGEST_INCREMENT)), splat8(real(1e-3)), splat8(real(1e3))
     for p in range(count):
         at = 6 * (first + p)

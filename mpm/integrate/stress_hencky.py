@@ -37,6 +37,7 @@ from mpm.materials import FLOW, Hencky, HenckyWarm, NoFlow, flow_lanes, moduli_l
 from mpm.outcome import INVERTED, RETURN_MAP
 from mpm.state import Expansion, GridHeating, Heating, Latched, NoExchange, NoExpansion, NoHeating, Softening, Surface
 from mpm.tensors import compose2, eigen2
+from mpm.transfer import CHUNK
 
 ACROSS = 4  # row of Chunk.e: stress out of plane
 WARMTH, PRESSURE, LOST = 6, 7, 8  # rows of Chunk.e: temperature [K], thermal stress [Pa], dissipated [J/m3]
@@ -100,7 +101,7 @@ def swells_softening_or_latched_or_expansion(expansion):
 @kernel(inline=True)
 def tell(body, chunk, first, p, count):
     """Temperatures and thermal stresses of eight particles in their rows of chunk.e; what lies behind the last one repeats it."""
-    e, n = chunk.e, chunk.e.shape[1]
+    e, n = chunk.e, CHUNK
     for q in range(p, p + EIGHT):
         i = first + min(q, count - 1)
         poke(e, WARMTH * n + q, temperature(body.thermal, i))
@@ -118,7 +119,7 @@ def blame(report, code, good, i, count):
 @kernel(inline=True)
 def heat_all(body, chunk, first, p, count, report):
     """Heat the particles p.. of the chunk by what they stretched (row GROW) and dissipated (row LOST); remember what they reached."""
-    e, n, particles = chunk.e, chunk.e.shape[1], body.particles
+    e, n, particles = chunk.e, CHUNK, body.particles
     gained = risen = splat8(0.0)
     if warms(body.heating):
         theta, density, stretched, lost = gained, gained, gained, gained  # in float64: a rise is a small difference
@@ -145,7 +146,7 @@ def answer(body, chunk, first, p, count, trace, deviator, dt, report):
 
     (trace, share of the deviator that is left, flowed 0 or 1, lam, mu, thermal stress), all as lanes.
     """
-    e, n = chunk.e, chunk.e.shape[1]
+    e, n = chunk.e, CHUNK
     tell(body, chunk, first, p, count)
     theta, thermal = conditions_eight(body.setting, load8(e, WARMTH * n + p), first + p, count - p), load8(e, PRESSURE * n + p)
     lam, mu = moduli_lanes(body.elastic, theta)
@@ -206,7 +207,7 @@ def size3(d1, d2, d3):
 @stress_plane.register(Hencky)
 @stress_plane.register(HenckyWarm)
 def stress_plane_hencky_warm_or_hencky(elastic, body, chunk, first, count, dt, report):
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    e, S, n, real = chunk.e, chunk.S, CHUNK, chunk.e.dtype.type
     third, lowest, minus = real(1.0 / 3.0), splat8(real(0)), splat8(real(-1))
     for p in range(0, count, EIGHT):
         xx, yy, zz, xy = load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p)
@@ -245,7 +246,7 @@ def stress_plane_hencky_warm_or_hencky(elastic, body, chunk, first, count, dt, r
 def stress_volume_hencky_warm_or_hencky(elastic, body, chunk, first, count, dt, report):
     if not flows(body.flow):
         deliver_volume(body.particles, chunk, first, count)
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    e, S, n, real = chunk.e, chunk.S, CHUNK, chunk.e.dtype.type
     lowest, minus = splat8(real(0)), splat8(real(-1))
     for p in range(0, count, EIGHT):
         B = (load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p), load8(e, 4 * n + p), load8(e, 5 * n + p))

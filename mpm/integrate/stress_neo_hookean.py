@@ -4,12 +4,13 @@ from mpm.integrate.strain import JACOBIAN, STRAIN, deliver_plane, deliver_volume
 from mpm.integrate.stress_hencky import ACROSS, carry_surface, stress_plane, stress_volume
 from mpm.lanes import EIGHT, absolute, fma, load8, maximum, most, splat8, store
 from mpm.materials import NeoHookean
+from mpm.transfer import CHUNK
 
 
 @stress_plane.register(NeoHookean)
 def stress_plane_neo_hookean(elastic, body, chunk, first, count, dt, report):
     deliver_plane(body.particles, chunk, first, count)
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    e, S, n, real = chunk.e, chunk.S, CHUNK, chunk.e.dtype.type
     mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
     for p in range(0, count, EIGHT):
         J = load8(e, JACOBIAN * n + p)
@@ -31,7 +32,7 @@ def stress_plane_neo_hookean(elastic, body, chunk, first, count, dt, report):
 @stress_volume.register(NeoHookean)
 def stress_volume_neo_hookean(elastic, body, chunk, first, count, dt, report):
     deliver_volume(body.particles, chunk, first, count)
-    e, S, n, real = chunk.e, chunk.S, chunk.e.shape[1], chunk.e.dtype.type
+    e, S, n, real = chunk.e, chunk.S, CHUNK, chunk.e.dtype.type
     mu, lam, one, stiff = splat8(real(elastic.mu)), splat8(real(elastic.lam)), splat8(real(1)), splat8(real(0))
     for p in range(0, count, EIGHT):
         J = load8(e, JACOBIAN * n + p)

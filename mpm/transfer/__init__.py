@@ -9,7 +9,7 @@ Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py),
           scatter_scalar, gather_scalar: one scalar field, for heat
           carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py, xpic.py)
 Shapes    chunk arrays (component, particle of the chunk); nodes (node, columns(D)): momentum (then velocity), mass, room
-May use   mpm.basis, mpm.jit, mpm.state                      May not  see laws
+May use   mpm.basis, mpm.boundary, mpm.jit, mpm.lanes, mpm.state                      May not  see laws
 To add    a scheme: a file with a NamedTuple and its `carry`; a dimension: a file like plane.py
 
 Further files

@@ -5,8 +5,9 @@ v_p = sum w v_i+,  C_p = 4/h^2 sum w v_i+ d^T.   Good for: nearly everything.   
 
 from typing import NamedTuple
 
+from mpm.boundary import directions
 from mpm.lanes import EIGHT, load8, store
-from mpm.transfer.roles import carry, collect, deliver, gather, scatter, spread, uses_basis_gradient, wants_change
+from mpm.transfer.roles import CHUNK, carry, collect, deliver, gather, scatter, spread, uses_basis_gradient, wants_change
 
 
 class Apic(NamedTuple):
@@ -26,7 +27,7 @@ def wants_change_apic(scheme):
 
 @spread.register(Apic)
 def spread_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
-    D, n = chunk.a.shape[0], chunk.m.shape[0]
+    D, n = directions(space), CHUNK
     for p in range(0, count, EIGHT):
         for c in range(D):
             store(chunk.a, c * n + p, load8(chunk.a, c * n + p) + load8(chunk.f, c * n + p))

@@ -156,16 +156,22 @@ def new_chunk(D, like, own_gradient, own_velocity):
 
 @kernel(inline=True)
 def lay_down(x, first, count, place):
-    """Positions of a chunk's particles as rows (D, n). Lanes behind the last particle repeat it. Written out by direction: a loop would cost more."""
-    D, n = x.shape[1], place.shape[1]
-    for p in range(count):
-        poke(place, p, peek(x, (first + p) * D))
-    if D > 1:
+    """Positions of a chunk's particles as rows (D, n). Lanes behind the last particle repeat it. By dimension: LLVM sees strides that are constants."""
+    D, n = x.shape[1], CHUNK
+    if D == 3:
         for p in range(count):
-            poke(place, n + p, peek(x, (first + p) * D + 1))
-    if D > 2:
+            at = 3 * (first + p)
+            poke(place, p, peek(x, at))
+            poke(place, n + p, peek(x, at + 1))
+            poke(place, 2 * n + p, peek(x, at + 2))
+    elif D == 2:
         for p in range(count):
-            poke(place, 2 * n + p, peek(x, (first + p) * D + 2))
+            at = 2 * (first + p)
+            poke(place, p, peek(x, at))
+            poke(place, n + p, peek(x, at + 1))
+    else:
+        for p in range(count):
+            poke(place, p, peek(x, first + p))
     for p in range(count, (count + EIGHT - 1) // EIGHT * EIGHT):
         for d in range(D):
             poke(place, d * n + p, peek(x, (first + count - 1) * D + d))
@@ -174,15 +180,21 @@ def lay_down(x, first, count, place):
 @kernel(inline=True)
 def pick_up(x, first, count, place):
     """The inverse of `lay_down`."""
-    D, n = x.shape[1], place.shape[1]
-    for p in range(count):
-        poke(x, (first + p) * D, peek(place, p))
-    if D > 1:
+    D, n = x.shape[1], CHUNK
+    if D == 3:
         for p in range(count):
-            poke(x, (first + p) * D + 1, peek(place, n + p))
-    if D > 2:
+            at = 3 * (first + p)
+            poke(x, at, peek(place, p))
+            poke(x, at + 1, peek(place, n + p))
+            poke(x, at + 2, peek(place, 2 * n + p))
+    elif D == 2:
         for p in range(count):
-            poke(x, (first + p) * D + 2, peek(place, 2 * n + p))
+            at = 2 * (first + p)
+            poke(x, at, peek(place, p))
+            poke(x, at + 1, peek(place, n + p))
+    else:
+        for p in range(count):
+            poke(x, first + p, peek(place, p))
 
 
 @kernel(inline=True)
