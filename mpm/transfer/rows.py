@@ -3,7 +3,7 @@
 A node is four numbers [px py pz m], so the three nodes of a row are twelve in a row (mpm.lanes: load_row). What a particle puts on a row is
 v_j (u_i (c + i X) + j u_i Y) times fixed lanes. Gather sums row by row, plane by plane, then in the row; of a direction it finds the sum and the moment,
 sum w u j over nodes j = -1, 0, 1, of which packing.py makes the slope.
-The rows of a stencil stay in registers while consecutive particles share them.
+The rows of a stencil stay in registers while consecutive particles share them, two nodes of each where the next particle is one node further along.
 """
 
 from mpm.jit import kernel
@@ -12,6 +12,7 @@ from mpm.transfer.packing import pack_plane, pack_volume, unpack_plane, unpack_v
 from mpm.transfer.roles import uses_basis_gradient
 from mpm.transfer.stencils import CHUNK, FIRST, ROWS, G, W
 
+NODE = 4  # numbers of a node
 Y, Z = ROWS * CHUNK, 2 * ROWS * CHUNK  # where the stencils of the second and third direction begin
 
 
@@ -91,6 +92,17 @@ def flush(nodes, at, step, rows):
 
 
 @kernel(inline=True)
+def left_behind(nodes, at, step, rows):
+    """Nodes += the first node of three rows; the rows from the next node on."""
+    a, b, c = thirds(rows[0]), thirds(rows[1]), thirds(rows[2])
+    store(nodes, at, load4(nodes, at) + a[0])
+    store(nodes, at + step, load4(nodes, at + step) + b[0])
+    store(nodes, at + 2 * step, load4(nodes, at + 2 * step) + c[0])
+    nought = splat4(nodes.dtype.type(0))
+    return three(a[1], a[2], nought), three(b[1], b[2], nought), three(c[1], c[2], nought)
+
+
+@kernel(inline=True)
 def scatter_plane(space, gradient, chunk, count, nodes):
     """The particles of a chunk on to the nodes (n, 4) of a plane."""
     pack_plane(space, gradient, chunk, count)
@@ -99,10 +111,13 @@ def scatter_plane(space, gradient, chunk, count, nodes):
     rows, last = zeros(nodes), -1
     for p in range(count):
         at = begins[p]
-        if at != last:
+        if at == last + NODE:
+            rows = left_behind(nodes, last, step, rows)
+        elif at != last:
             if last >= 0:
                 flush(nodes, last, step, rows)
-            rows, last = zeros(nodes), at
+            rows = zeros(nodes)
+        last = at
         mine = p * wide
         w = weights_along(s, Y + W * CHUNK + p)
         row = growing(packed, mine, mine + 8) * w
@@ -125,12 +140,17 @@ def scatter_volume(space, gradient, chunk, count, nodes):
     front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), -1
     for p in range(count):
         at = begins[p]
-        if at != last:
+        if at == last + NODE:
+            front = left_behind(nodes, last, step, front)
+            middle = left_behind(nodes, last + plane, step, middle)
+            back = left_behind(nodes, last + 2 * plane, step, back)
+        elif at != last:
             if last >= 0:
                 flush(nodes, last, step, front)
                 flush(nodes, last + plane, step, middle)
                 flush(nodes, last + 2 * plane, step, back)
-            front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), at
+            front, middle, back = zeros(nodes), zeros(nodes), zeros(nodes)
+        last = at
         mine = p * wide
         w, uv = weights_along(s, Z + W * CHUNK + p), chunk.uv
         row, X, rowY = growing(packed, mine, mine + 12) * w, alike(packed, mine + 4) * w, alike(packed, mine + 8) * w

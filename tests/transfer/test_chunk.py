@@ -1,4 +1,4 @@
-"""Scratch of a chunk: every array its own, and at the start of a cache line."""
+"""Scratch of a chunk: every array its own, and at the start of a cache line. (`reach` and `begins` are whole numbers.)"""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ def test_arrays_of_a_chunk(D, real, own):
     for make in (new_chunk, getattr(new_chunk, "py_func", new_chunk)):
         chunk = make(D, np.zeros(1, real), *own)
         shared = {"L": "C" if not own[0] else "", "u": "v" if not own[1] else "", "change": "v" if not own[1] else "", "U": "C" if not own[1] else ""}
-        arrays = {name: array for name, array in chunk._asdict().items() if name != "reach" and not shared.get(name)}
+        arrays = {name: array for name, array in chunk._asdict().items() if name not in ("reach", "begins") and not shared.get(name)}
         assert all(array.ctypes.data % 64 == 0 and array.dtype == real and not array.any() for array in arrays.values())
         for number, array in enumerate(arrays.values(), 1):
             array[...] = number
