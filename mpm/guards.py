@@ -68,8 +68,9 @@ class Guards:
 
     def share(self, scene) -> None:
         """Bodies that pass heat to each other have one range of data."""
-        passing = scene.meeting.passing if scene.meeting is not None else np.zeros((0, 0))
-        for b, c in np.argwhere(passing):
+        if scene.meeting is None or not scene.meeting.warms:
+            return
+        for b, c in np.argwhere(scene.meeting.passing):
             one, other = self.data[b], self.data[c]
             one.low, one.high = min(one.low, other.low), max(one.high, other.high)
             one.heats, one.cools, one.warms = one.heats or other.heats, one.cools or other.cools, one.warms or other.warms

@@ -116,8 +116,9 @@ class Clock:
         """After a block of steps of dt: rates from increments, and the sums of its steps."""
         self.shortest, self.longest = min(self.shortest, dt), max(self.longest, dt)
         self.reports[:, RATE] /= dt
+        sums = self.reports.sum(axis=0).tolist()
         for name, place in GATHERED.items():
-            setattr(self, name, getattr(self, name) + float(np.sum(self.reports[:, place])))
+            setattr(self, name, getattr(self, name) + sums[place])
 
 
 def simulate(scene: Scene, beat=None, keeper=None) -> Run:

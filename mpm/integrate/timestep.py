@@ -17,6 +17,7 @@ PACE R0 alpha h^2/(kappa J): APIC damps by the step, so fewer are better, and ab
 SETTING of its shortest time constant: its laws learn of X once a heat step.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,16 +57,16 @@ def limits(space, D, bodies, reports) -> Limits:
     mechanical, heat, pace = {}, {}, float("inf")
 
     def keep(table, name, seconds):
-        if np.isfinite(seconds):
+        if math.isfinite(seconds):
             table[name] = min(table.get(name, float("inf")), float(seconds))
 
-    for body, report in zip(bodies, reports, strict=True):
+    for body, report in zip(bodies, reports.tolist(), strict=True):
         R0 = float(body.particles.m[0] / body.particles.V0[0])
         lam, mu = stiffest(body)
         soften = (1.0 + coupling(body, lam, mu, R0)) * (1.0 + abs(min(report[STRAIN], 0.0)))
-        keep(mechanical, "elastic wave", WAVE * h * np.sqrt(R0 / (D * lam + 2 * mu) / soften))
+        keep(mechanical, "elastic wave", WAVE * h * math.sqrt(R0 / (D * lam + 2 * mu) / soften))
         if report[SPEED] > 0:
-            keep(mechanical, "advection", 0.5 * h / np.sqrt(report[SPEED]))
+            keep(mechanical, "advection", 0.5 * h / math.sqrt(report[SPEED]))
         if report[RATE] > 0:
             keep(mechanical, "velocity gradient", 0.25 / report[RATE])
         rate = sum(load.rate for load in acting(body.source) if isinstance(load, Load))
@@ -73,7 +74,7 @@ def limits(space, D, bodies, reports) -> Limits:
             keep(mechanical, "drag", DRAG / rate)
         if isinstance(body.thermal, Thermal):
             kappa, alpha = conductance(body.thermal)
-            J = max(report[SWELL], float(np.max(body.particles.J)))
+            J = max(report[SWELL], float(body.particles.J.max()))
             if kappa > 0:
                 keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
                 pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
