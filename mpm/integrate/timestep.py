@@ -60,7 +60,7 @@ def limits(space, D, bodies, reports) -> Limits:
         if math.isfinite(seconds):
             table[name] = min(table.get(name, float("inf")), float(seconds))
 
-    for body, report in zip(bodies, reports.tolist(), strict=True):
+    for body, report in zip(bodies, reports, strict=True):
         R0 = float(body.particles.m[0] / body.particles.V0[0])
         lam, mu = stiffest(body)
         soften = (1.0 + coupling(body, lam, mu, R0)) * (1.0 + abs(min(report[STRAIN], 0.0)))

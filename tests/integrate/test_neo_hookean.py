@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import mpm
+from mpm.integrate import stress_neo_hookean  # noqa: F401 - registers the law
 from mpm.integrate.strain import JACOBIAN, REPORT, STRAIN
 from mpm.integrate.stress_hencky import ACROSS, stress_plane, stress_volume
 from mpm.materials import NeoHookean, energy, moduli, stress
