@@ -91,8 +91,8 @@ def draw(rows: list[dict], path: Path) -> None:
                 mine = [row for row in rows if row["case"] == case and row["setting"].startswith(kind) and row["error"] != ""]
                 ax.plot([row["seconds"] for row in mine], [100 * row["error"] for row in mine], "o-" if kind == "implicit" else "s:", color=colour, label=kind)
                 for row in mine if kind == "explicit" else mine[:: max(len(mine) - 1, 1)]:  # tolerances stand close: the ends of their line
-                    at = (row["seconds"], 100 * row["error"])
-                    ax.annotate(row["setting"].partition(", ")[2], at, xytext=(4, 4), textcoords="offset points", fontsize=8)
+                    at, where = (row["seconds"], 100 * row["error"]), {"xytext": (4, 4)} if kind == "explicit" else {"xytext": (-5, -4), "ha": "right"}
+                    ax.annotate(row["setting"].partition(", ")[2], at, textcoords="offset points", fontsize=8, **where)
         axes[0].set_ylabel("largest error of shape [%]")
         axes[0].legend()
         style.save(fig, path)
