@@ -28,8 +28,8 @@ def without(what: str) -> Iterator[None]:
 def report(
     out: Folder,
     to: Annotated[Path | None, typer.Option("-o", "--out", "--to", metavar="FILE", parser=folder, help=TO, show_default=False)] = None,
-    with_movie: Annotated[bool, typer.Option("--movie", help="Also make OUT/movie.webp; it goes into the page if it is small.")] = False,
-    with_paraview: Annotated[bool, typer.Option("--paraview", help="Also make OUT/paraview.vtkhdf.")] = False,
+    with_movie: Annotated[bool, typer.Option("--movie", help="Also make OUT/movie.webp if there are snapshots; it goes into the page if it is small.")] = False,
+    with_paraview: Annotated[bool, typer.Option("--paraview", help="Also make OUT/paraview.vtkhdf if there are snapshots.")] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
