@@ -133,7 +133,7 @@ def main() -> int:
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for datasets, pictures and the sheet")
     parser.add_argument("names", nargs="*", metavar="NAME", help="configs, or folders of them; all unless given")
     parser.add_argument("--smoke", action="store_true", help="coarse and short, as each config's smoke section says")
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     wanted = list(configs(given.names))
     if not wanted:
         parser.error(f"no config is called {', '.join(given.names)}; there are {', '.join(path.stem for path in configs([]))}")
