@@ -45,3 +45,8 @@ def test_numbers_that_differ_have_different_texts():
     assert words.numbers([0.3, 0.1 + 0.2]) == ["0.3", "0.30000000000000004"]
     assert words.numbers([-1e-9, -1.0000001e-9]) == ["−1·10⁻⁹", "−1.0000001·10⁻⁹"]
     assert words.numbers(["a" * 40, "a" * 41, "b"]) == [f"{'a' * 27}… (1)", f"{'a' * 27}… (2)", "b"]
+
+
+def test_a_short_name_still_says_whose_it_is():
+    assert words.short("mean temperature, weighted with the heat capacity at the start, of cheese") == "mean temperature, of cheese"
+    assert words.short("kinetic, elastic and gravitational energy; the last only where") == "kinetic, elastic and gravitational energy"
