@@ -37,6 +37,7 @@ from mpm.lanes import (
     store,
     thirds,
     three,
+    transposed,
 )
 
 
@@ -100,6 +101,28 @@ def test_rows_touch_twelve_numbers(real):
     rows.py_func(a, plain, real(0.5))
     assert np.array_equal(compiled, plain) and plain[12] == -1 and (plain[13:17] == a[5:9]).all() and plain[17] == -1
     assert (plain[:12] == 0.5 * a[1:13] + a[[9, 10, 11, 12, 5, 6, 7, 8, 1, 2, 3, 4]] - a[1:13] ** 2).all()
+
+
+@kernel
+def turned(a, out):
+    n = 4
+    for lanes in transposed(load4(a, 0), load4(a, 4), load4(a, 8), load4(a, 12)):
+        store(out, n - 4, lanes)
+        n += 4
+    for lanes in transposed(load8(a, 0), load8(a, 8), load8(a, 16), load8(a, 24)):
+        store(out, n - 4, lanes)
+        n += 8
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+def test_fours_and_eights_transposed(real):
+    a = np.arange(32, dtype=real)
+    compiled, plain = np.zeros(48, real), np.zeros(48, real)
+    turned(a, compiled)
+    turned.py_func(a, plain)
+    halves = [a.reshape(4, 8)[:, half : half + 4].T for half in (0, 4)]
+    assert np.array_equal(compiled, plain) and (plain[:16].reshape(4, 4) == a[:16].reshape(4, 4).T).all()
+    assert (plain[16:].reshape(4, 2, 4) == np.stack(halves, axis=1)).all()
 
 
 def test_a_nan_is_below_nothing():

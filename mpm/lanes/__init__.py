@@ -9,7 +9,7 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
     peek(array, at), poke(array, at, x)    one number: unlike array[i, k] never a negative index, which costs a comparison each where LLVM cannot see the sign
     splat4(x), splat8(x)                   x in every lane
     four(a, b, c, d)                       lanes from numbers
-    transposed(a, b, c, d)                 four fours, rows and columns exchanged
+    transposed(a, b, c, d)                 four fours, rows and columns exchanged; of eights, their first halves and their second halves
     join(a, b), low(a), high(a)            two fours make an eight, and back
     load_row(array, at)                    twelve numbers: three nodes, a row of a stencil; only for what is done lane by lane, store and thirds
     three(a, b, c), thirds(row)            three fours make a row, and back

@@ -208,18 +208,24 @@ def put_compiled(context, builder, signature, arguments):
 
 
 def transposed(a, b, c, d):
-    return tuple(np.stack((a, b, c, d), axis=1))
+    groups = np.stack((a, b, c, d), axis=1).reshape(-1, 4, 4)  # four by four
+    return tuple(groups[:, k].reshape(-1) for k in range(4))
 
 
-@operation(transposed, lambda a, b, c, d: types.UniTuple(a, 4) if same(a, b) == same(c, d) == a and a.count == 4 else None, *[LanesType] * 4)
+@operation(transposed, lambda a, b, c, d: types.UniTuple(a, 4) if same(a, b) == same(c, d) == a and a.count in (4, 8) else None, *[LanesType] * 4)
 def transposed_compiled(context, builder, signature, arguments):
-    """In two rounds of shuffles, four each."""
-    a, b, c, d = arguments
+    """In two rounds of four shuffles, each one instruction where lanes cross no more of a register than it allows: 128 bits."""
+    (a, b, c, d), n = arguments, signature.args[0].count
+    pairs = ([0, 0, 1, 1], [2, 2, 3, 3]) if signature.args[0].dtype == types.float32 else ([0, 0, 2, 2], [1, 1, 3, 3])
 
-    def mixed(x, y, order):
+    def mixed(x, y, lanes, second):
+        order = [g + lane + n * other for g in range(0, n, 4) for lane, other in zip(lanes, second, strict=True)]
         return builder.shuffle_vector(x, y, places(order))
 
-    even, odd = [0, 4, 2, 6], [1, 5, 3, 7]
-    p, q, r, s = mixed(a, b, even), mixed(a, b, odd), mixed(c, d, even), mixed(c, d, odd)
-    near, far = [0, 1, 4, 5], [2, 3, 6, 7]
-    return context.make_tuple(builder, signature.return_type, [mixed(p, r, near), mixed(q, s, near), mixed(p, r, far), mixed(q, s, far)])
+    halves = []
+    for lanes in pairs:
+        x, y = mixed(a, b, lanes, [0, 1, 0, 1]), mixed(c, d, lanes, [0, 1, 0, 1])
+        halves.append([mixed(x, y, [0, 1, 0, 1], [0, 0, 1, 1]), mixed(x, y, [2, 3, 2, 3], [0, 0, 1, 1])])
+    (p, q), (r, s) = halves
+    made = [p, q, r, s] if signature.args[0].dtype == types.float32 else [p, r, q, s]
+    return context.make_tuple(builder, signature.return_type, made)

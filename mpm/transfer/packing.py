@@ -16,24 +16,21 @@ FOUR = 4
 def pack(packed, p, k, a, b, c, d):
     """Components a, b, c, d of eight particles from p to place k of their fours."""
     wide = packed.shape[1]
-    for half in range(2):
-        first, second, third, fourth = transposed(low(a), low(b), low(c), low(d)) if half == 0 else transposed(high(a), high(b), high(c), high(d))
-        at = (p + FOUR * half) * wide + FOUR * k
-        store(packed, at, first)
-        store(packed, at + wide, second)
-        store(packed, at + 2 * wide, third)
-        store(packed, at + 3 * wide, fourth)
+    at = p * wide + FOUR * k
+    for four in transposed(a, b, c, d):
+        store(packed, at, low(four))
+        store(packed, at + FOUR * wide, high(four))
+        at += wide
 
 
 @kernel(inline=True)
 def unpack(packed, p, k):
     """The inverse: components of eight particles from p."""
     wide = packed.shape[1]
-    at = p * wide + FOUR * k
-    a, b, c, d = transposed(load4(packed, at), load4(packed, at + wide), load4(packed, at + 2 * wide), load4(packed, at + 3 * wide))
-    at += FOUR * wide
-    e, f, g, h = transposed(load4(packed, at), load4(packed, at + wide), load4(packed, at + 2 * wide), load4(packed, at + 3 * wide))
-    return join(a, e), join(b, f), join(c, g), join(d, h)
+    at, on = p * wide + FOUR * k, FOUR * packed.shape[1]
+    a, b = join(load4(packed, at), load4(packed, at + on)), join(load4(packed, at + wide), load4(packed, at + wide + on))
+    at += 2 * wide
+    return transposed(a, b, join(load4(packed, at), load4(packed, at + on)), join(load4(packed, at + wide), load4(packed, at + wide + on)))
 
 
 @kernel(inline=True)
