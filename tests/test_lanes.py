@@ -10,6 +10,7 @@ from mpm.lanes import (
     choose,
     expm1,
     exponential,
+    fetch_ahead,
     floor,
     fma,
     four,
@@ -87,6 +88,7 @@ def test_compiled_equals_plain(real, holes):
 @kernel
 def rows(a, out, number):
     x = load_row(a, 1)
+    fetch_ahead(a, 1)  # says nothing
     left, centre, right = thirds(x)
     store(out, 0, fma(like(x, number), x, three(right, centre, left)) - x * x)
     store(out, 13, centre)

@@ -25,7 +25,7 @@ from mpm.integrate.step_parts import Moment, scratch
 from mpm.integrate.strain import CODE, PARTICLE, SPEED, STEP
 from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
-from mpm.lanes import EIGHT, below, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
+from mpm.lanes import EIGHT, below, fetch_ahead, fma, four, least, load4, load8, maximum, most, peek, poke, splat4, splat8, store
 from mpm.outcome import LEFT_GRID, NON_FINITE, UNSOUND
 from mpm.state import PAD
 from mpm.transfer import CHUNK, carry, collect, fetch, lay_down, pick_up, spread, wants_change
@@ -107,6 +107,18 @@ def pass_body(method, body, chunk, buffers, moment, report):
 
 
 @kernel(inline=True)
+def state_ahead(particles, first, count):
+    """The chunk's strains, volumes and masses are on their way while it gathers."""
+    B, line = particles.B, 64 // particles.B.itemsize
+    for at in range(first * B.shape[1], (first + count) * B.shape[1], line):
+        fetch_ahead(B, at)
+    for at in range(first, first + count, line):
+        fetch_ahead(particles.J, at)
+        fetch_ahead(particles.m, at)
+        fetch_ahead(particles.V0, at)
+
+
+@kernel(inline=True)
 def step_chunk(method, body, chunk, source, moment, first, count, shake, report):
     """`count` particles from `first` on, from gather to what is to be scattered; source: nodes and forces. The opening only reads. False where one fails."""
     space, gradient, x, opening, dt = method.space, method.gradient, body.particles.x, moment.opening, moment.dt
@@ -115,6 +127,7 @@ def step_chunk(method, body, chunk, source, moment, first, count, shake, report)
         report[CODE], report[PARTICLE] = UNSOUND, first
         return False
     lay_down(x, first, count, chunk.place)
+    state_ahead(body.particles, first, count)
     if opening:
         fetch(body.particles, first, chunk, count)
     else:

@@ -7,6 +7,7 @@ they are written down. A `Lanes` value is an LLVM vector `<n x T>`, so the same 
     store(array, at, a)                    the same, back
     aligned(shape, dtype)                  zeros at the start of a cache line; in Python only
     peek(array, at), poke(array, at, x)    one number: unlike array[i, k] never a negative index, which costs a comparison each where LLVM cannot see the sign
+    fetch_ahead(array, at)                 the cache line of a number begins to come from memory, and nobody waits for it
     splat4(x), splat8(x)                   x in every lane
     four(a, b, c, d)                       lanes from numbers
     transposed(a, b, c, d)                 four fours, rows and columns exchanged; of eights, their first halves and their second halves
@@ -38,6 +39,7 @@ Further files
 
 from mpm.lanes.access import (
     aligned,
+    fetch_ahead,
     four,
     high,
     item,
@@ -64,7 +66,7 @@ from mpm.lanes.order import below, choose, least, maximum, minimum, most, precis
 EIGHT = 8  # particles that pass at once
 
 __all__ = [
-    "EIGHT", "absolute", "aligned", "below", "choose", "erf", "expm1", "exponential", "floor", "fma", "four", "high", "item", "join", "least", "like",
-    "load4", "load8", "load_row", "log1p", "logarithm", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8", "sqrt",
-    "store", "thirds", "three", "transposed",
+    "EIGHT", "absolute", "aligned", "below", "choose", "erf", "expm1", "exponential", "fetch_ahead", "floor", "fma", "four", "high", "item", "join", "least",
+    "like", "load4", "load8", "load_row", "log1p", "logarithm", "low", "maximum", "minimum", "most", "peek", "poke", "precision", "put", "splat4", "splat8",
+    "sqrt", "store", "thirds", "three", "transposed",
 ]  # fmt: skip

@@ -106,6 +106,20 @@ def poke_compiled(context, builder, signature, arguments):
     return context.get_dummy_value()
 
 
+def fetch_ahead(array, at):
+    """Nothing: what is asked for comes from memory by itself."""
+
+
+@operation(fetch_ahead, lambda array, at: types.none if holds(array) else None, types.Array, types.Integer)
+def fetch_ahead_compiled(context, builder, signature, arguments):
+    start = place(context, builder, signature, arguments)
+    whole = ir.IntType(32)
+    kind = ir.FunctionType(ir.VoidType(), [start.type, whole, whole, whole])
+    ask = builder.module.declare_intrinsic("llvm.prefetch.p0", fnty=kind)
+    builder.call(ask, [start, ir.Constant(whole, 1), ir.Constant(whole, 3), ir.Constant(whole, 1)])  # to write, to be kept near, data
+    return context.get_dummy_value()
+
+
 def splat4(x):
     return np.full(4, x)
 
