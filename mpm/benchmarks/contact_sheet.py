@@ -7,8 +7,8 @@
 
 NAME      names of configs or of folders of them (`scenes`, `loaf`, `stability`); all unless given
 --smoke   what each config's `smoke:` says: coarse and short; pictures of the same kinds
-The same command again computes nothing that is there. All at full size takes about an hour on two cores; scenes alone some minutes. Exit code 1 where a
-command failed or left no picture: what it said is on the page.
+The same command again computes nothing that is there, unless source or config have changed since. All at full size takes about an hour on two cores; scenes
+alone some minutes. Exit code 1 where a command failed or left no picture: what it said is on the page.
 """
 
 import argparse
@@ -73,7 +73,7 @@ def show(config: Path, out: Path, smoke: bool) -> Shown:
         made.mpm("stability", name, *where, *short, "-q")
     elif experiment.fit is not None:
         made.mpm("fit", name, *where, *short, "-q")
-    elif made.mpm("sweep", name, *where, *short, "-q", fine=(0, 3, 4)):
+    elif made.mpm("sweep", name, *where, *short, "--rerun", "stale", "-q", fine=(0, 3, 4)):
         figures(made, experiment)
     if not made.pictures:
         made.faults.append("no picture")
