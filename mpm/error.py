@@ -23,7 +23,7 @@ class Motion:
 
     fields    name -> f(X (N, D), t)
     start     start(body) -> body: what a config cannot say, fields at the start and sources; the body arrives in its reference state
-    measure   measure(X, V (N,), found) -> {series: value} of the observed fields `found`; conclude(times, series) -> {final: value}
+    measure   measure(X, V (N,), found, t) -> {series: value} of the observed fields `found`; conclude(times, series) -> {final: value}
     observed  fields beside those compared that `measure` wants
     """
 
@@ -84,7 +84,7 @@ class Errors:
             prefix = "error" if name == "temperature" else f"error_{name}"
             values[f"{prefix}_l2"], values[f"{prefix}_max"] = math.sqrt(square), math.sqrt(float(np.max(error)))
         if self.motion.measure is not None:
-            values |= self.motion.measure(self.X, V, found)
+            values |= self.motion.measure(self.X, V, found, t)
         return values
 
     def finals(self, times, series) -> dict[str, float]:

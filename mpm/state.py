@@ -211,7 +211,7 @@ class Within(NamedTuple):
 
 
 class Load(NamedTuple):
-    """Nominal tractions on parts of a body's surface, and a drag (integrate/traction.py)."""
+    """Tractions on parts of a body's surface, and a drag (integrate/traction.py)."""
 
     force: np.ndarray  # (N, D) at full load [N]
     dipole: np.ndarray  # (N, D, D) sum over pieces of force times offset from the particle, in the reference state [N m]
@@ -221,6 +221,7 @@ class Load(NamedTuple):
     ramp: Any  # Ramp or Within
     rate: float  # drag: -rate m v [1/s]
     scale: float  # of chunk.S: 1, or 1/(sum w d^2) with the MLS gradient [1, 1/m2]
+    area: Any  # mpm.integrate.traction: Nominal or Present
 
 
 class NoAverage(NamedTuple):

@@ -145,7 +145,8 @@ ELSEWHERE = {
     "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
     "act(Given)", "act(Both)", "warm(Warming)", "warm(NoWarming)", "push_at(Force)", "push_at(NoForce)",  # tests/verification/test_sources.py
     "push_at(Jumping)", *(f"mix_past({force})" for force in ("Force", "NoForce", "Jumping")),  # tests/contact/test_course.py
-    "act(Load)", *(f"{role}({course})" for role in ("share", "within", "opening") for course in ("Ramp", "Within")),  # tests/integrate/test_traction.py
+    "act(Load)", "turn(Nominal)", "turn(Present)",  # tests/total/test_present_area.py
+    *(f"{role}({course})" for role in ("share", "within", "opening") for course in ("Ramp", "Within")),  # tests/integrate/test_traction.py
     "advance_heat(Thermal)", "advance_stabilised(Isothermal)",  # tests/heat/test_exchange_kinds.py
     "stress_plane(NeoHookean)", "stress_volume(NeoHookean)",  # tests/integrate/test_neo_hookean.py
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py

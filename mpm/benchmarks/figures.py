@@ -18,7 +18,7 @@ from mpm.records.netcdf import write_whole
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "configs" / "studies"
 DOCS = ROOT / "docs"
-BESIDE = {"robin_cylinder": "fem_disc.py", "cantilever": "fem_beam.py"}  # charts beside which scikit-fem is drawn, and its program
+BESIDE = {"robin_cylinder": "fem_disc.py", "cantilever": "fem_beam.py", "thermal_shock": "fem_slab.py"}  # charts with scikit-fem beside, and its program
 
 
 def main() -> None:

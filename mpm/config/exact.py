@@ -105,7 +105,21 @@ class Hertz(Kind):
     body: str | None = doc(None, description=BODY)
 
 
+class PressedCylinder(Kind):
+    """A long thick cylinder under pressures inside and outside, at rest: Lamé's stress, and its continuation to large strains."""
+
+    kind: ClassVar[str] = "pressed_cylinder"
+    body: str | None = doc(None, description=BODY)
+
+
+class SpinningDisc(Kind):
+    """An elastic disc in plane strain that is set turning without strain: it widens, and breathes about where it would rest (series)."""
+
+    kind: ClassVar[str] = "spinning_disc"
+    body: str | None = doc(None, description=BODY)
+
+
 MOVING: tuple[type[Kind], ...] = (
     RobinRing, HenckyBar, StandingWave, RigidRotation, FreeFall, HydrostaticColumn, Manufactured, CooksMembrane, Cantilever, TractionBar, ThermalShock,
-    ThermalCylinder, Hertz,
+    ThermalCylinder, Hertz, PressedCylinder, SpinningDisc,
 )  # fmt: skip

@@ -111,6 +111,8 @@ FIELDS: dict[str, Any] = {
     "Stage.stress": {"xx": 0, "yy": 0},
     "Load.of": "dough",
     "Traction.nominal": [0, "-500 Pa"],
+    "Traction.cauchy": [0, "-500 Pa"],
+    "Traction.pressure": "2 kPa",
     "Surface.of": "loaf",
     "Source.of": "loaf",
     "Source.force": [0, "-9.81 m/s**2"],

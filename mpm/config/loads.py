@@ -13,11 +13,24 @@ Rate = Annotated[float, Quantity("1/s", "rate of drag", least=0)]
 LOADS = ("traction", "drag")
 
 
-class Traction(Model):
-    """A force by area of the undeformed surface, that keeps its direction as the body deforms."""
+FORMS = ("nominal", "cauchy", "pressure")
 
-    nominal: tuple[Pressure, ...] = doc(description="force by reference area, one number a direction")
+
+class Traction(Model):
+    """A force by area: of the surface as it was (nominal), of the surface as it is (cauchy), or a pressure, which stays normal to the surface as it is."""
+
+    nominal: tuple[Pressure, ...] | None = doc(None, description="force by area of the undeformed surface, one number a direction, which it keeps")
+    cauchy: tuple[Pressure, ...] | None = doc(None, description="force by area of the present surface, one number a direction, which it keeps")
+    pressure: Pressure | None = doc(None, description="force by area of the present surface, against its present outward normal; negative pulls")
     ramp: Ramp = doc(0.0, description="time to full load, of which 3 s^2 - 2 s^3 acts at s = t/ramp, t from when it begins; at once unless given")
+
+    @model_validator(mode="after")
+    def form(self) -> "Traction":
+        """One form."""
+        given = [key for key in FORMS if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise problem("traction", "a traction is of one form" + (f", not {' and '.join(given)}" if given else ""), list(FORMS))
+        return self
 
 
 class Drag(Model):

@@ -22,7 +22,8 @@ def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     elif name in experiment.materials and experiment.materials[name].elastic is None:
         yield Finding(("loads", index), f"{name!r} has no elastic law, so the body cannot move", f"an elastic section in materials.{name}", on_key=True)
     elif item.traction is not None:
-        yield from vector(experiment, ("loads", index, "traction", "nominal"), item.traction.nominal, "the traction")
+        for form in ("nominal", "cauchy"):
+            yield from vector(experiment, ("loads", index, "traction", form), getattr(item.traction, form), "the traction")
         yield from known_side(experiment, ("loads", index, "side"), item)
 
 

@@ -25,6 +25,7 @@ def hindered(experiment: Any) -> str:
     one = named(experiment, "implicit")
     found = [*mechanics(one), *(wrong for name, item in one.tools.items() for wrong in mechanics_tool(one, name, item))]
     found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
+    found += [wrong for index, load in enumerate(one.loads) for wrong in mechanics_load(one, index, load)]
     if found:
         return found[0].message
     if experiment.exact is not None or any(body.velocity is not None or body.angular_velocity is not None for body in experiment.bodies.values()):
@@ -57,6 +58,13 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         yield Finding(("method", "fracture"), "implicit mechanics opens no faces", ["warn", "fail", EXPLICIT], on_key=True)
     if known(lambda: experiment.exact is not None and experiment.exact.kind == "manufactured"):
         yield Finding(("exact",), "the sources of a manufactured solution are not known to implicit mechanics", EXPLICIT, on_key=True)
+
+
+def mechanics_load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
+    """Of a load."""
+    if asked(experiment) and known(lambda: item.traction is not None and item.traction.nominal is None):
+        said = "implicit mechanics knows tractions by reference area only"
+        yield Finding(("loads", index, "traction"), said, ["nominal", EXPLICIT], on_key=True)
 
 
 def mechanics_tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""F <- (1 + dt L) F: the total deformation gradient, carried only where surfaces or loads need it."""
+"""F <- (1 + dt L) F: the total deformation gradient, carried only where surfaces or loads need it; and its cofactors."""
 
 from mpm.jit import kernel
 
@@ -24,3 +24,14 @@ def carry_owners(F, row, L, first, count, dt, D):
         i = row[first + p]
         if i >= 0:
             carry_one(F, L, i, p, dt, D)
+
+
+@kernel(inline=True)
+def cofactor(F, i, c, k, D):
+    """Entry (c, k) of det F F^-T, F (D, D) the entry i: it turns an area vector of the undeformed shape into one of the present (Nanson)."""
+    if D == 1:
+        return 1.0
+    if D == 2:
+        return F[i, 1 - c, 1 - k] if c == k else -F[i, 1 - c, 1 - k]
+    a, b, p, q = (c + 1) % 3, (c + 2) % 3, (k + 1) % 3, (k + 2) % 3
+    return F[i, a, p] * F[i, b, q] - F[i, a, q] * F[i, b, p]

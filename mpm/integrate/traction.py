@@ -1,7 +1,10 @@
-"""Nominal tractions and drag on a body: forces beside the stress, taken from the config's `loads`.
+"""Tractions and drag on a body: forces beside the stress, taken from the config's `loads`.
 
 f_i += share(t) sum_p (f_p w_ip + D_p F_p^T grad w_ip),  f_p and D_p of each particle from mpm.scene.traction: the force at its pieces of surface and its
-moment, or, on flat faces, the stress that the traction asks for, faded out inside. T is force by reference area and keeps its direction.
+moment, or, on flat faces, the stress that the traction asks for, faded out inside. A nominal T is force by reference area and keeps its direction.
+Tractions by present area (Present) add, with G = J F^-T of the particle and N the reference normal of its pieces of surface, by the forces f_p at these,
+    pressure  (G - 1) f_p, (G - 1) D_p        cauchy  (|G N| - 1) f_p, (|G N| - 1) D_p
+so at small strain they meet the stress of particles as nominal ones do, and at any strain they are force by present area.
 drag  f_p = -rate m_p v_p;   share(t) = s^2 (3 - 2 s), s = t/ramp up to 1: without a kick at either end. Of a load within a time, from its beginning on
 and nothing after its end: the impulse at a jump, part of which acts before it, takes that part of the share before (momentum is exact)
 A static answer is the end of a ramp of several periods of the slowest mode omega, with a drag rate of about 2 omega.
@@ -11,12 +14,36 @@ Fails when   the face is not flat: then the quadrature of a cell that is cut bal
 A body without loads compiles none of this.
 """
 
+import math
+from typing import NamedTuple
+
+import numpy as np
+
 from mpm.heat.programmes import SAME
 from mpm.integrate.body_force import act
-from mpm.integrate.deformation import carry_one
+from mpm.integrate.deformation import carry_one, cofactor
 from mpm.integrate.strain import WORKED
 from mpm.jit import kernel, role
-from mpm.state import Load, Ramp, Within
+from mpm.state import PER_PARTICLE, Load, Ramp, Within
+
+
+class Nominal(NamedTuple):
+    """Tractions by reference area: forces stay as they are at the start."""
+
+
+class Present(NamedTuple):
+    """Tractions by present area (integrate/traction.py): what forces and moments are at the start, those that turn with the surface, those that do not."""
+
+    still: np.ndarray  # (N, D) force of all loads [N]
+    moment: np.ndarray  # (N, D, D) its moment [N m]
+    press: np.ndarray  # (N, D) force at pieces of surface, of pressures [N]
+    press_moment: np.ndarray  # (N, D, D)
+    pull: np.ndarray  # (N, D) of Cauchy tractions [N]
+    pull_moment: np.ndarray  # (N, D, D)
+    normal: np.ndarray  # (N, D) unit normal of the pieces that are pulled, a mean; 0 without
+
+
+PER_PARTICLE[Present] = Present._fields
 
 
 @kernel(inline=True)
@@ -78,6 +105,40 @@ def opening_within(ramp):
     return ramp.past[0]
 
 
+@role(inline=True)
+def turn(area, load, i, J, D):
+    """Force and moment of particle i by what its surface is now; J: its change of volume."""
+    raise TypeError(f"no tractions by {type(area).__name__}")
+
+
+@turn.register(Nominal)
+def turn_nominal(area, load, i, J, D):
+    return None
+
+
+@turn.register(Present)
+def turn_present(area, load, i, J, D):
+    volume, square = 0.0, 0.0
+    for k in range(D):
+        volume += load.F[i, 0, k] * cofactor(load.F, i, 0, k, D)
+    out = J / volume  # what widens out of the plane, as the hoop does
+    for c in range(D):
+        normal = 0.0
+        for k in range(D):
+            normal += out * cofactor(load.F, i, c, k, D) * area.normal[i, k]
+        square += normal * normal
+    more = math.sqrt(square) - 1.0
+    for c in range(D):
+        load.force[i, c] = area.still[i, c] - area.press[i, c] + more * area.pull[i, c]
+        for d in range(D):
+            load.dipole[i, c, d] = area.moment[i, c, d] - area.press_moment[i, c, d] + more * area.pull_moment[i, c, d]
+        for k in range(D):
+            G = out * cofactor(load.F, i, c, k, D)
+            load.force[i, c] += G * area.press[i, k]
+            for d in range(D):
+                load.dipole[i, c, d] += G * area.press_moment[i, k, d]
+
+
 @kernel(inline=True)
 def power(source, m, i, chunk, p, D):
     """What loads work on particle i in the step that is over [W]: at the velocity and the gradient that it gathered."""
@@ -109,6 +170,7 @@ def act_load(source, body, chunk, first, count, dt, next_dt, report):
             continue
         if dt > 0.0:
             carry_one(source.F, chunk.L, i, p, dt, D)
+            turn(source.area, source, i, particles.J[i], D)
         now = next_dt * share(source.ramp, source.t[i], past)
         for c in range(D):
             chunk.f[c, p] += now * source.force[i, c]

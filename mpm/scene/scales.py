@@ -203,9 +203,14 @@ def of_body(experiment, name: str) -> Scales:
     speed = math.hypot(*body.velocity) if body.velocity is not None else 0.0
     spin = body.angular_velocity
     speed += (math.hypot(*spin) if isinstance(spin, tuple) else abs(spin or 0.0)) * math.hypot(*extent) / 2
-    pull = sum(math.hypot(*entry.traction.nominal) for entry in experiment.loads if entry.of == name and entry.traction is not None)
+    pull = sum(largest(entry.traction) for entry in experiment.loads if entry.of == name and entry.traction is not None)
     found = laws(material, max(low, 1.0), high) | {"traction": pull}
     return Scales(name, volume, surface, extent, *bearing(experiment, name), reach, height, speed, low, high, material.density, exchanges, **found)
+
+
+def largest(traction) -> float:
+    """Force by area of a traction [Pa]."""
+    return abs(traction.pressure) if traction.pressure is not None else math.hypot(*(traction.nominal or traction.cauchy))
 
 
 def shaped(experiment, name: str, high: float):

@@ -8,6 +8,7 @@ import numpy as np
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.diagnostics import nodal
 from mpm.integrate.timestep import stiffest
+from mpm.lanes import aligned
 from mpm.materials import NoFlow, value
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import exchanging_surface
@@ -17,11 +18,12 @@ from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import shape
 from mpm.scene.sources import sourced
-from mpm.scene.traction import one_course
+from mpm.scene.traction import by_area, one_course
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
 from mpm.total.heat import NoWarmth, Warmth
-from mpm.total.reference import Reference, new_nodes
+from mpm.total.reference import Reference, Skin, Still, new_nodes
 from mpm.total.step import courant_of
+from mpm.transfer import columns
 
 NEAR = 1.5  # cells: what is nearer to a wall shares nodes with its mirror
 FACING = 0.5  # of a unit normal
@@ -98,13 +100,13 @@ def reference_of(experiment, name: str, space, body, surface, lower, upper) -> R
         m[i] += m[g]
     active = np.setdiff1d(np.union1d(touched, image), ghost)
     touched = np.union1d(touched, np.concatenate([ghost, image]))
-    load, ramp, drag = loads(experiment, name, space, surface, n, ghost, image, sign)
+    load, skin, ramp, drag = loads(experiment, name, space, surface, n, (ghost, image, sign), dtype)
     X = particles.x.copy()
     plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
     courant = courant_of(space, X.astype(float), *stiffest(body))
-    m, load, sign = (np.ascontiguousarray(a, dtype=dtype) for a in (m, load, sign))
+    m, sign = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign))
     return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, held, np.zeros(1), ramp, drag, courant,
-                     warmth_of(space, body, walls, experiment.grid.size))  # fmt: skip
+                     warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
 
 
 def warmth_of(space, body, walls, size):
@@ -185,21 +187,33 @@ def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
     return found.T
 
 
-def loads(experiment, name: str, space, surface, n: int, ghost, image, sign) -> tuple[np.ndarray, Ramp | Within, float]:
-    """(nodal forces at full load (n, D), or (0, D) without any; their course; rate of the drag)."""
+def loads(experiment, name: str, space, surface, n: int, walls, dtype) -> tuple[np.ndarray, Skin | Still, Ramp | Within, float]:
+    """(nodal forces at full load, (0, D) without any; what acts by present area; their course; rate of the drag)."""
     D, entries = experiment.grid.directions, [entry for entry in experiment.loads if entry.of == name]
     tractions, drag = pulling(entries)
     course = one_course(experiment, name)
     if not tractions:
-        return np.zeros((0, D)), course, drag
-    x, force, outline = [], [], shape(experiment.bodies[name].shape, experiment.grid.dimension)
+        return np.zeros((0, D), dtype), Still(), course, drag
+    x, area, force, pressure, pull, outline = [], [], [], [], [], shape(experiment.bodies[name].shape, experiment.grid.dimension)
     for entry in tractions:
         pieces = outline.faces(surface, entry.side, experiment.grid.dimension == 2)
         if not pieces.any():
             raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
+        one, zero = by_area(entry.traction, surface.normal[pieces]), np.zeros((pieces.sum(), D))
         x.append(surface.x[pieces])
-        force.append(surface.w[pieces, None] * np.array(entry.traction.nominal))
-    load = weigh(space, np.concatenate(x), np.concatenate(force), n)
-    for k in range(len(ghost)):
-        load[image[k]] += sign[k] * load[ghost[k]]
-    return load, course, drag
+        area.append(surface.w[pieces, None] * surface.normal[pieces])
+        force.append(surface.w[pieces, None] * one)
+        pressure.append(zero[:, 0] + (entry.traction.pressure or 0.0))
+        pull.append(one if entry.traction.cauchy else zero)
+    x, area, force, pressure, pull = (np.concatenate(each) for each in (x, area, force, pressure, pull))
+    load = weigh(space, x, force, n)
+    present = (pressure != 0) | np.any(pull != 0, axis=1)
+    still, wide = weigh(space, x[~present], force[~present], n), columns(D) if present.any() else D
+    for ghost, image, sign in zip(*walls, strict=True):
+        load[image] += sign * load[ghost]
+    out, kept = aligned((n, wide), dtype), aligned((n, wide), dtype)
+    out[:, :D], kept[:, :D] = load, still
+    if not present.any():
+        return out, Still(), course, drag
+    at = [np.ascontiguousarray(one[present], dtype=dtype) for one in (x, area, pressure, pull)]
+    return out, Skin(*at, kept), course, drag

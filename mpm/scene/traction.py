@@ -6,7 +6,7 @@ which they bear it: with chi = 1 at the face and 0 farther than REACH cells insi
     int_face w T dA = int [chi P_T . grad w + w T (N . grad chi) + w chi P_T e_r/r (axisymmetric)] dV + int_surface w (T on the face - chi P_T n) dA
 
 by the particles' points and volumes and by the pieces of surface; what force and first moment then lack (of quadrature) is spread where chi falls. A load on a
-face that is not flat acts at its pieces.
+face that is not flat acts at its pieces. Of tractions by present area this is what they are at the start; what the change of area adds acts at the pieces.
 """
 
 import functools
@@ -16,6 +16,7 @@ import numpy as np
 
 from mpm.basis import inverse_moment
 from mpm.config.boundary import spell
+from mpm.integrate.traction import Nominal, Present
 from mpm.scene.menus import pulling
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import shape
@@ -58,9 +59,13 @@ def at_pieces(cut, pieces, each) -> tuple[np.ndarray, np.ndarray]:
     return force, dipole
 
 
-def pushed(cut, pieces, T, h: float, radial: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(force, moment) of a traction T on pieces."""
-    whole = at_pieces(cut, pieces, cut.area[pieces, None] * T)
+def by_area(traction, normal: np.ndarray) -> np.ndarray:
+    """Force by area (S, D) of a traction on undeformed surface of outward normals (S, D)."""
+    return -traction.pressure * normal if traction.pressure is not None else np.tile(traction.nominal or traction.cauchy, (len(normal), 1))
+
+
+def pushed(cut, pieces, traction, whole, h: float, radial: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(force, moment) of a traction on pieces; `whole`: those of its pieces."""
     normal = np.average(cut.normal[pieces], axis=0, weights=cut.area[pieces])
     size = float(np.linalg.norm(normal))
     depth = -(cut.centroid @ normal)
@@ -68,6 +73,7 @@ def pushed(cut, pieces, T, h: float, radial: bool) -> tuple[np.ndarray, np.ndarr
     if size < 1 - FLAT or np.ptp(front) > FLAT * h:
         return whole
     depth += front.mean()
+    T = by_area(traction, normal[None])[0]
     reach = min(REACH * h, ROOM * float(depth.max()))
     chi, fall = faded(depth, reach)
     V, x, P = cut.volume, cut.centroid, np.outer(T, normal)
@@ -114,14 +120,25 @@ def one_load(experiment, name: str, cut, how, entries, course, courses) -> Load:
     rate = pulling([entry for entry in entries if first and spell(entry) == course[1:]])[1]
     N, D = cut.centroid.shape
     force, dipole, radial = np.zeros((N, D)), np.zeros((N, D, D)), isinstance(space, Axisymmetric)
+    press, pull, normal = (np.zeros((N, D)), np.zeros((N, D, D))), (np.zeros((N, D)), np.zeros((N, D, D))), np.zeros((N, D))
     outline = shape(experiment.bodies[name].shape, experiment.grid.dimension)
     for entry in tractions:
         pieces = np.flatnonzero(outline.faces(cut, entry.side, experiment.grid.dimension == 2))
         if len(pieces) == 0:
             raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
-        one, moment = pushed(cut, pieces, np.array(entry.traction.nominal), space.h, radial)
+        whole = at_pieces(cut, pieces, cut.area[pieces, None] * by_area(entry.traction, cut.normal[pieces]))
+        one, moment = pushed(cut, pieces, entry.traction, whole, space.h, radial)
         force, dipole = force + one, dipole + moment
+        if entry.traction.pressure is not None:
+            press = press[0] + whole[0], press[1] + whole[1]
+        elif entry.traction.cauchy is not None:
+            pull = pull[0] + whole[0], pull[1] + whole[1]
+            np.add.at(normal, cut.owner[pieces], cut.area[pieces, None] * cut.normal[pieces])
     scale = 1.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
     held = np.tile(np.eye(D), (N, 1, 1))
     carries = np.any(force != 0, axis=1) | np.any(dipole != 0, axis=(1, 2))
-    return Load(force, dipole, held, carries, np.zeros(N), ramp_of(*course), rate, float(scale))
+    size = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal /= np.where(size > 0, size, 1.0)
+    turns = any(entry.traction.nominal is None for entry in tractions)
+    area = Present(force.copy(), dipole.copy(), *press, *pull, normal) if turns else Nominal()
+    return Load(force, dipole, held, carries, np.zeros(N), ramp_of(*course), rate, float(scale), area)

@@ -1,6 +1,8 @@
 """What acts on a body in the total frame beside its stress, and what averages its changes of volume: roles by the body's own objects.
 
 push     a source (mpm.sources, or what the config gives): force m b(X, t) on w, heat r(X, t) to the particle           NoSource: nothing
+press    tractions by present area, at points of the reference surface, N dA outward: sum w (T |G N| - p G N) dA, G = J F^-T (Nanson); their work is that of the
+         mean of the forces before and after the motion                                                                    Still: nothing
 average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jiang & Choo 2022) on the weights of the reference shape:
          J_i = sum w V0 J_p/sum w V0,  J- = sum w J_i,  with J- + own (J - J-) for J-:   stress of F- = (J-/J)^(1/D) F,  P = tau(F-) F^-T
          In plane strain and axisymmetry the directions of the grid are scaled, the third is not.                        NoAverage: nothing
@@ -8,14 +10,19 @@ average  F-bar (de Souza Neto et al. 1996, with the nodal averages of Zhao, Jian
 
 import math
 
+import numpy as np
+
 from mpm.integrate.body_force import take_up
+from mpm.integrate.deformation import cofactor
 from mpm.integrate.given_source import push_at, warm
-from mpm.integrate.strain import HEATED
-from mpm.jit import role
+from mpm.integrate.strain import HEATED, WORKED
+from mpm.integrate.traction import share
+from mpm.jit import kernel, role
 from mpm.sources import Given, heat, push
 from mpm.state import Average, Axisymmetric, Line, NoAverage, NoSource, Plane, Source, Volume
 from mpm.tensors import dilation1, dilation2, dilation3
-from mpm.transfer import CHUNK, Bspline, gather, gather_scalar, lay_down, scatter_scalar
+from mpm.total.reference import Skin, Still, fold
+from mpm.transfer import CHUNK, Bspline, gather, gather_scalar, lay_down, scatter, scatter_scalar
 
 
 @role(inline=True)
@@ -80,6 +87,64 @@ def swollen_axisymmetric(space, X, i, chunk, p):
 def swollen_volume(space, X, i, chunk, p):
     L = chunk.L
     return dilation3((L[0, 0, p], L[0, 1, p], L[0, 2, p], L[1, 0, p], L[1, 1, p], L[1, 2, p], L[2, 0, p], L[2, 1, p], L[2, 2, p]))
+
+
+@role
+def press(skin, space, reference, chunk, dt, report):
+    """After a motion of dt: nodal forces of tractions by present area, to reference.load, and their work to the report."""
+    raise TypeError(f"no tractions on {type(skin).__name__}")
+
+
+@press.register(Still)
+def press_still(skin, space, reference, chunk, dt, report):
+    return None
+
+
+@press.register(Skin)
+def press_skin(skin, space, reference, chunk, dt, report):
+    load, gradient, D, F = reference.load, Bspline(), skin.x.shape[1], np.zeros((1, skin.x.shape[1], skin.x.shape[1]))
+    half = 0.5 * dt * share(reference.ramp, reference.t[0] - 0.5 * dt, 0.0)
+    report[WORKED] -= half * along(reference)
+    for n in reference.touched:
+        for c in range(load.shape[1]):
+            load[n, c] = skin.still[n, c]
+    chunk.G[:] = 0.0
+    for first in range(0, skin.x.shape[0], CHUNK):
+        count = min(CHUNK, skin.x.shape[0] - first)
+        lay_down(skin.x, first, count, chunk.place)
+        gather(space, gradient, skin.x, first, chunk, count, reference.u)
+        for p in range(count):
+            s, square = first + p, 0.0
+            for c in range(D):
+                for d in range(D):
+                    F[0, c, d] = chunk.L[c, d, p]
+                F[0, c, c] += 1.0
+            volume = 0.0
+            for k in range(D):
+                volume += F[0, 0, k] * cofactor(F, 0, 0, k, D)
+            out = (1.0 + swollen(space, skin.x, s, chunk, p)) / volume
+            for c in range(D):
+                area = 0.0
+                for k in range(D):
+                    area += out * cofactor(F, 0, c, k, D) * skin.area[s, k]
+                square += area * area
+                chunk.a[c, p] = -skin.pressure[s] * area
+            size = math.sqrt(square)
+            for c in range(D):
+                chunk.a[c, p] += size * skin.pull[s, c]
+        scatter(space, gradient, skin.x, first, chunk, count, load, chunk.reach)
+    fold(load, reference)
+    report[WORKED] += half * along(reference)
+
+
+@kernel
+def along(reference):
+    """Work of the loads at full load by time [W]."""
+    total, load, v = 0.0, reference.load, reference.v
+    for n in reference.active:
+        for c in range(reference.X.shape[1]):
+            total += load[n, c] * v[n, c]
+    return total
 
 
 @role

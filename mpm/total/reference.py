@@ -14,6 +14,20 @@ from mpm.state import Axisymmetric
 from mpm.transfer import CHUNK, Bspline, columns, gather, lay_down, new_chunk, scatter
 
 
+class Still(NamedTuple):
+    """Tractions by reference area alone, or none: nodal forces stay as they are."""
+
+
+class Skin(NamedTuple):
+    """Points of the reference surface on which tractions by present area act (mpm.total.forces.press)."""
+
+    x: np.ndarray  # (S, D) [m]
+    area: np.ndarray  # (S, D) reference area times outward normal
+    pressure: np.ndarray  # (S,) against the present normal [Pa]
+    pull: np.ndarray  # (S, D) Cauchy traction [Pa]
+    still: np.ndarray  # (n, columns(D)) nodal forces of tractions by reference area at full load [N], on ghosts too
+
+
 class Reference(NamedTuple):
     """Nodal state of one body, and weights by the points X of its reference shape.
 
@@ -26,7 +40,7 @@ class Reference(NamedTuple):
     v: np.ndarray  # (n, columns(D)) velocity [m/s]
     f: np.ndarray  # (n, columns(D)) scratch of one step: force of the stress [N]
     m: np.ndarray  # (n,) mass [kg], those of ghosts on their images
-    load: np.ndarray  # (n, D) force of the tractions at full load [N]; (0, D) without
+    load: np.ndarray  # (n, D), or (n, columns(D)) by present area: force of the tractions at full load [N]; (0, D) without
     touched: np.ndarray  # nodes that a particle sees
     active: np.ndarray  # those of them that are no ghosts
     ghost: np.ndarray  # (G,)
@@ -38,6 +52,7 @@ class Reference(NamedTuple):
     drag: float  # rate of the drag [1/s]
     courant: float  # largest stable step in h sqrt(R0/(D lam + 2 mu)), at rest
     warmth: Any  # mpm.total.heat.Warmth or NoWarmth
+    skin: Any = Still()  # or Skin
 
 
 @kernel

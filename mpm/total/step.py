@@ -3,6 +3,7 @@
 v <- ((1 - dt d/2) v + dt/2 a) twice a step, in the middle at once, a = (f + s(t) load)/m + g,  d: rate of the drag, the second half implicit: no limit from it
 u <- u + dt v
 f = -sum V0 P grad_X w from F(u); walls hold nodes, and what lies behind them mirrors what is inside
+load, where it is by present area, from F(u) at points of the surface (mpm.total.forces.press)
 
 Largest stable step, at rest: frequencies are below those of single particles on their own masses (Fried 1972, for elements),
     omega^2 <= max_p T_p (D lam + 2 mu)/R0,   T_p = largest of sum_i (d_k w_ip)^2/w_ip over directions k,   dt < 2/omega.
@@ -20,7 +21,7 @@ from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
 from mpm.integrate.traction import share, within
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
-from mpm.total.forces import act_on, average_volume
+from mpm.total.forces import act_on, average_volume, press
 from mpm.total.reference import fold, hold, mirror
 from mpm.total.strain import answer_all
 from mpm.transfer import CHUNK, Bspline, gather, lay_down, new_chunk, scatter
@@ -43,6 +44,7 @@ def advance_total(space, body, reference, gravity, dt, steps, report):
             kick(reference, gravity[step % rows], 0.0, 1.0 - x if opening else (1.0 - x) / (1.0 + x), 0.5 * dt if opening else dt / (1.0 + x))
             report[WORKED] += dt * power(reference, dt)
             drift(reference, dt)
+            press(reference.skin, space, reference, chunk, dt, report)
             squeeze = max(squeeze, force_all(space, body, reference, chunk, dt, report))
             report[STEP] = step
     kick(reference, gravity[steps % rows], 1.0, 1.0 / (1.0 + x), 0.5 * dt / (1.0 + x))

@@ -21,6 +21,7 @@ Further files
     nafems_t3            A bar between a fixed end and one that follows a sine (NAFEMS benchmark T3)
     nafems_t4            A plate in steady state
     path                 the prescribed history of a material point as functions of time
+    pressed_cylinder     a thick cylinder under pressures inside and outside, at rest
     relaxation           stress relaxation of a viscoplastic point at held strain, from a state outside the ellipse
     rheometer            reading M, p0 and eta from a compression test, as from a rheometer's curve
     rigid_rotation       steady rotation with translation
@@ -30,6 +31,7 @@ Further files
     robin_sphere         A sphere that cools through its surface (Carslaw & Jaeger 1959, 9.4)
     setup                what the exact solutions need to know of a scene, and refusals where the scene is not their problem
     shear_heating        adiabatic heating of a point that is sheared past its yield stress
+    spinning_disc        an elastic disc that turns freely: it widens and breathes
     standing_wave        A linear thermoelastic wave between insulated walls
     stefan               melting of a half space behind a hot face
     thermal_cylinder     a thick cylinder between two temperatures, at rest
@@ -55,6 +57,7 @@ from mpm.verification import (
     manufactured,
     nafems_t3,
     nafems_t4,
+    pressed_cylinder,
     relaxation,
     rigid_rotation,
     robin_cylinder,
@@ -62,6 +65,7 @@ from mpm.verification import (
     robin_slab,
     robin_sphere,
     shear_heating,
+    spinning_disc,
     standing_wave,
     stefan,
     thermal_cylinder,
@@ -99,9 +103,11 @@ EXACT = {
     "thermal_shock": thermal_shock.exact,
     "thermal_cylinder": thermal_cylinder.exact,
     "hertz": hertz.exact,
+    "pressed_cylinder": pressed_cylinder.exact,
+    "spinning_disc": spinning_disc.exact,
 }
 
-LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder", "hertz")  # scenes that have loads of their own
+LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder", "hertz", "pressed_cylinder")  # scenes that have loads of their own
 SOURCED = ("heated_slab", "formulas")  # and sources
 
 

@@ -113,7 +113,7 @@ def exact(experiment):
     if material.flow is not None or material.expansion is not None or experiment.gravity is not None or held != "stick":
         raise ValueError("cooks_membrane needs an elastic body without flow, expansion and gravity, and walls: {left: stick}")
     tractions = [load for load in experiment.loads if load.traction is not None]
-    if len(tractions) != 1 or tractions[0].side != "right" or tractions[0].traction.nominal[0] != 0:
+    if len(tractions) != 1 or tractions[0].side != "right" or (tractions[0].traction.nominal or [1])[0] != 0:
         raise ValueError("cooks_membrane needs one traction, upwards or downwards, on side right")
     elastic = elastic_law(material.elastic)
     u = static(elastic.lam, elastic.mu) * tractions[0].traction.nominal[1]

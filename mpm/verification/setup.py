@@ -92,7 +92,7 @@ def at_rest(displacement, stress, where=None, start=None):
     def mean(values, V):
         return float(np.sqrt(V @ np.sum(values**2, axis=1) / V.sum()))
 
-    def measure(X, V, found):
+    def measure(X, V, found, t):
         kept = np.ones(len(X), bool) if where is None else where(X)
         u, tau = displacement(X), stress(X[kept])
         wrong, stray = found["displacement"] - u, found["stress"][kept] - tau

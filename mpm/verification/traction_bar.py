@@ -20,8 +20,8 @@ def exact(experiment):
     body, lower, length = line_box(experiment)
     elastic, _ = elastic_only(experiment, body)
     pulls = [load for load in experiment.loads if load.traction is not None]
-    if lower != 0 or length > experiment.grid.size[0] * (1 - 1e-9) or len(pulls) != 1 or pulls[0].side != "right":
-        raise ValueError("traction_bar needs a box from the left wall that ends in the domain, and one traction on its side right")
+    if lower != 0 or length > experiment.grid.size[0] * (1 - 1e-9) or len(pulls) != 1 or pulls[0].side != "right" or not pulls[0].traction.nominal:
+        raise ValueError("traction_bar needs a box from the left wall that ends in the domain, and one nominal traction on its side right")
     M, T = elastic.lam + 2 * elastic.mu, pulls[0].traction.nominal[0]
     if T >= M / math.e:
         raise ValueError("traction_bar needs a traction below (lam + 2 mu)/e, the most that Hencky's law bears")

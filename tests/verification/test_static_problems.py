@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from mpm.verification import cantilever, exact_solution, hertz, thermal_cylinder
+from mpm.verification import cantilever, exact_solution, hertz, pressed_cylinder, spinning_disc, thermal_cylinder
 
 TOTAL = {"method.frame": "total"}
 
 
 def apart(motion, X, displacement, stress):
     """Relative differences between a solution at rest and another, at points of equal volume."""
-    found = motion.measure(X, np.ones(len(X)), {"displacement": displacement, "stress": stress})
+    found = motion.measure(X, np.ones(len(X)), {"displacement": displacement, "stress": stress}, 0.0)
     return {name: value / np.sqrt(np.mean(np.sum(values**2, axis=1))) for name, values in (("displacement", displacement), ("stress", stress))
             for value in [found[f"error_{name}_l2"]]}  # fmt: skip
 
@@ -78,7 +78,39 @@ def test_bar_and_shock_hold_what_they_say(shipped):
     assert (tau[:, 0] == 0).all() and tau[:, 1] == pytest.approx(-1e-8 / 0.7 * (theta - 400))
 
 
+def test_pressed_cylinder_is_lames_at_small_strain_and_holds_its_pressure_at_large_ones():
+    """A half of it in balance, p r_i = int P_t dR, and sigma_r = -p at the inner face, which Newton's method of another kind would have to find too."""
+    a, b, lam, mu = 0.52, 1.13, 0.577, 0.385
+    R = np.linspace(a, b, 20001)
+    small, straight = pressed_cylinder.widened(a, b, lam, mu, 2e-8, 5e-9)(R), pressed_cylinder.lame(a, b, lam, mu, 2e-8, 5e-9)(R)
+    assert small == pytest.approx(straight, rel=1e-6)
+    B, C = straight[:, 0] @ [1 / a, 1] / 2, (straight[0, 0] / a - straight[1, 0]) * a**2 / 2
+    assert 2 * (lam + mu) * B - 2 * mu * C / a**2 == pytest.approx(-2e-8, rel=1e-6) and 2 * (lam + mu) * B - 2 * mu * C / b**2 == pytest.approx(-5e-9, rel=1e-6)
+    u, slope = pressed_cylinder.widened(a, b, lam, mu, 0.1, 0.0)(R)
+    er, et = np.log1p(slope), np.log1p(u / R)
+    radial, hoop = (2 * mu * er + lam * (er + et)) / np.exp(er + et), (2 * mu * et + lam * (er + et)) * np.exp(-et)
+    assert radial[0] == pytest.approx(-0.1, rel=1e-7) and abs(radial[-1]) < 1e-8 and u[0] > 0.25 * a
+    assert np.sum((hoop[1:] + hoop[:-1]) / 2 * np.diff(R)) == pytest.approx(0.1 * (a + u[0]), rel=1e-6)
+
+
+def test_spinning_disc_solves_its_equation():
+    """u'' = (u' + u/s)' + 8 s in units of its own, by finite differences; at rest and without strain at the start, no stress at the rim at any time."""
+    ratio, step = 0.57, 1e-3
+    s, u, rise, hoop = spinning_disc.radial(ratio, 0.0)
+    assert np.abs(u).max() < 1e-8 and np.abs(rise).max() < 1e-5
+    for clock in (0.4, 2.3):
+        (_, before, _, _), (_, now, rise, hoop), (_, after, _, _) = (spinning_disc.radial(ratio, clock + k * step) for k in (-1, 0, 1))
+        pull = np.gradient(rise + hoop, s, edge_order=2)
+        inner = slice(20, -20)  # behind the wave that starts at the rim: 0.4 in, and on its way back
+        away = np.abs(np.abs(1 - s[inner]) - clock % 2) > 0.05
+        assert ((after - 2 * now + before) / step**2)[inner][away] == pytest.approx((pull + 8 * s)[inner][away], abs=2e-2)
+        assert abs(rise[-1] + (1 - ratio) * hoop[-1]) < 1e-12
+
+
 @pytest.mark.parametrize(("name", "changes", "said"), [
+    ("pressed_cylinder", {"loads.0.side": "all"}, "sides inner and outer"),
+    ("pressed_cylinder", {"loads.0.traction.pressure": 0.3}, "may not bear"),
+    ("spinning_disc", {"bodies.disc.angular_velocity": 0.1}, "small strains"),
     ("cantilever", {"walls.left": "slip"}, "stick"),
     ("traction_bar", {"loads.0.traction.nominal": [0.9]}, "most that Hencky's law bears"),
     ("thermal_shock", {"bodies.slab.temperature": 390}, "reference temperature"),
@@ -117,6 +149,6 @@ def test_a_disc_that_rolls(points):
 @pytest.mark.slow  # compilations of heat in the total frame
 def test_orders_in_the_total_frame(core, points):
     cells = (0.1, 0.05, 0.025)
-    for name, least in (("cantilever", 1.5), ("thermal_cylinder", thermal_cylinder.ORDER)):
+    for name, least in (("cantilever", 1.5), ("thermal_cylinder", thermal_cylinder.ORDER), ("pressed_cylinder", 1.8), ("spinning_disc", 1.5)):
         errors = [run.finals["error_displacement"] for run in points(f"{name}_total", "grid.cell", cells)]
         assert core.order(errors) > least
