@@ -79,7 +79,7 @@ def test_bar_and_shock_hold_what_they_say(shipped):
 
 
 def test_pressed_cylinder_is_lames_at_small_strain_and_holds_its_pressure_at_large_ones():
-    """A half of it in balance, p r_i = int P_t dR, and sigma_r = -p at the inner face, which Newton's method of another kind would have to find too."""
+    """sigma_r = -p at the inner face, 0 at the outer one, and one half of it in balance with the other: p r_i = int P_t dR."""
     a, b, lam, mu = 0.52, 1.13, 0.577, 0.385
     R = np.linspace(a, b, 20001)
     small, straight = pressed_cylinder.widened(a, b, lam, mu, 2e-8, 5e-9)(R), pressed_cylinder.lame(a, b, lam, mu, 2e-8, 5e-9)(R)
