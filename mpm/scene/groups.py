@@ -22,6 +22,7 @@ from mpm.scene.scaling import FROUDE
 from mpm.scene.weight import heaviest
 
 SMALL, LARGE = 0.1, 10.0
+LOCKS = 0.45  # Poisson's ratio
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,10 @@ def motion(experiment, one: Scales) -> list[Group]:
         alone = not (one.speed or one.traction or one.gamma or experiment.tools)  # then gravity is all that moves it
         drop = "gravity" if one.held and bent < 1e-3 and not alone else ""
         found.append(Group("gravity/stiffness", "R0gH/E", sag, "R0 g H/E", said, one.name, drop, 2 * bent))
+    nu, averaged = one.lam / (2 * (one.lam + one.mu)), experiment.method.locking is not None
+    if one.M is None and averaged == (nu < LOCKS) and experiment.grid.directions > 1:
+        said = "it does not lock: F-bar makes what bends too soft, leave `locking` out" if averaged else "it locks as it bends: method.locking: fbar"
+        found.append(Group("Poisson", "nu", nu, "lam/(2 (lam + mu))", said, one.name, "", None))
     if one.M is not None and weight > 0:
         ratio = weight / one.M[0]
         said = "it stands without flowing" if 2 * ratio * one.lever < 1 else "it may flow under its weight" if ratio < LARGE else "it flows like a liquid"

@@ -22,7 +22,7 @@ from mpm.scene.traction import by_area, one_course
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
 from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, Skin, Still, new_nodes
-from mpm.total.step import courant_of
+from mpm.total.step import courant_of, leaning
 from mpm.transfer import columns
 
 NEAR = 1.5  # cells: what is nearer to a wall shares nodes with its mirror
@@ -95,18 +95,29 @@ def reference_of(experiment, name: str, space, body, surface, lower, upper) -> R
     walls = bonded(experiment, name, surface, lower, upper)
     m = weigh(space, particles.x.astype(float), particles.m.astype(float)[:, None], n)[:, 0]
     touched = np.flatnonzero(m > 0)
-    ghost, image, sign, held = mirrors(space, walls, touched)
+    ghost, image, sign, wall, lean, held = folds = mirrors(space, walls, touched)
+    pulled = folded(np.repeat(m[:, None], D, axis=1), *folds[:5])
     for g, i in zip(ghost, image, strict=True):
         m[i] += m[g]
     active = np.setdiff1d(np.union1d(touched, image), ghost)
     touched = np.union1d(touched, np.concatenate([ghost, image]))
-    load, skin, ramp, drag = loads(experiment, name, space, surface, n, (ghost, image, sign), dtype)
+    near = np.intersect1d(active, np.concatenate([image, wall]))
+    less = 1 - pulled[near] / m[near, None]
+    load, skin, ramp, drag = loads(experiment, name, space, surface, n, folds[:5], dtype)
     X = particles.x.copy()
     plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
-    courant = courant_of(space, X.astype(float), *stiffest(body))
-    m, sign = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign))
-    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, held, np.zeros(1), ramp, drag, courant,
-                     warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
+    courant = courant_of(space, X.astype(float), particles.V0.astype(float), walls, *stiffest(body))
+    m, sign, lean, less = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign, lean, less))
+    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, wall, lean, near, less, held, np.zeros(1), ramp,
+                     drag, courant, warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
+
+
+def folded(nodes: np.ndarray, ghost, image, sign, wall, lean) -> np.ndarray:
+    """Nodal values (n, D), what ghosts carry added where it comes from (mpm.total.reference.fold)."""
+    for k in range(len(ghost)):
+        nodes[image[k]] += sign[k] * nodes[ghost[k]]
+        nodes[wall[k]] += lean[k] * nodes[ghost[k]]
+    return nodes
 
 
 def warmth_of(space, body, walls, size):
@@ -124,7 +135,7 @@ def warmth_of(space, body, walls, size):
     capacity = p.m.astype(float) * value(body.thermal.alpha, body.thermal.zero)
     C = weigh(space, p.x.astype(float), capacity[:, None], n)[:, 0]
     touched = np.flatnonzero(C > 0)
-    ghost, image, _, _ = mirrors(space, walls, touched)
+    ghost, image, *_ = mirrors(space, walls, touched)
     for g, i in zip(ghost, image, strict=True):
         C[i] += C[g]
     active = np.setdiff1d(np.union1d(touched, image), ghost)
@@ -154,9 +165,9 @@ def bonded(experiment, name: str, surface, lower, upper) -> np.ndarray:
 
 
 def mirrors(space, walls, touched):
-    """(ghost (G,), image (G,), sign (G, D), held (H, 2)) of the walls: directions in turn, so that a corner is folded twice."""
+    """(ghost (G,), image (G,), sign (G, D), wall (G,), lean (G,), held (H, 2)) of the walls: directions in turn, so that a corner is folded twice."""
     counts, D = extents(space), directions(space)
-    nodes, ghost, image, sign, held = touched, [], [], [], []
+    nodes, ghost, image, sign, between, lean, held = touched, [], [], [], [], [], []
     for axis in range(D):
         for side in range(2):
             kind = walls[axis, side]
@@ -171,12 +182,17 @@ def mirrors(space, walls, touched):
             ghost.append(nodes[beyond])
             image.append(np.ravel_multi_index(tuple(inside.T), counts))
             sign.append(np.tile([-1.0 if c in holds else 1.0 for c in range(D)], (len(inside), 1)))
+            inside[:, axis] = wall
+            between.append(np.ravel_multi_index(tuple(inside.T), counts))
+            lean.append(np.full(len(inside), leaning(space) if kind == STICK else 0.0))
             on = nodes[index[:, axis] == wall]
-            held += [np.stack([on, np.full(len(on), c)], axis=-1) for c in holds]
+            if kind != STICK:
+                held.append(np.stack([on, np.full(len(on), axis)], axis=-1))
             nodes = np.union1d(nodes[~beyond], image[-1])
     none = np.zeros(0, np.int64)
     pairs = np.unique(np.concatenate([np.zeros((0, 2), np.int64), *held]), axis=0)
-    return np.concatenate([none, *ghost]), np.concatenate([none, *image]), np.concatenate([np.zeros((0, D)), *sign]), pairs
+    whole = [np.concatenate([none, *each]) for each in (ghost, image, between)]
+    return whole[0], whole[1], np.concatenate([np.zeros((0, D)), *sign]), whole[2], np.concatenate([np.zeros(0), *lean]), pairs
 
 
 def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
@@ -187,7 +203,7 @@ def weigh(space, x: np.ndarray, values: np.ndarray, n: int) -> np.ndarray:
     return found.T
 
 
-def loads(experiment, name: str, space, surface, n: int, walls, dtype) -> tuple[np.ndarray, Skin | Still, Ramp | Within, float]:
+def loads(experiment, name: str, space, surface, n: int, folds, dtype) -> tuple[np.ndarray, Skin | Still, Ramp | Within, float]:
     """(nodal forces at full load, (0, D) without any; what acts by present area; their course; rate of the drag)."""
     D, entries = experiment.grid.directions, [entry for entry in experiment.loads if entry.of == name]
     tractions, drag = pulling(entries)
@@ -206,11 +222,9 @@ def loads(experiment, name: str, space, surface, n: int, walls, dtype) -> tuple[
         pressure.append(zero[:, 0] + (entry.traction.pressure or 0.0))
         pull.append(one if entry.traction.cauchy else zero)
     x, area, force, pressure, pull = (np.concatenate(each) for each in (x, area, force, pressure, pull))
-    load = weigh(space, x, force, n)
+    load = folded(weigh(space, x, force, n), *folds)
     present = (pressure != 0) | np.any(pull != 0, axis=1)
     still, wide = weigh(space, x[~present], force[~present], n), columns(D) if present.any() else D
-    for ghost, image, sign in zip(*walls, strict=True):
-        load[image] += sign * load[ghost]
     out, kept = aligned((n, wide), dtype), aligned((n, wide), dtype)
     out[:, :D], kept[:, :D] = load, still
     if not present.any():

@@ -19,8 +19,8 @@ def begin(space, body, reference) -> None:
     project(space, reference, body.particles)
     if isinstance(body.locking, Average):
         nodal(space, reference.X.astype(float), body.particles.V0.astype(float), body.locking.volume)
-        for ghost, image in zip(reference.ghost, reference.image, strict=True):
-            body.locking.volume[image] += body.locking.volume[ghost]
+        for ghost, image, lean in zip(reference.ghost, reference.image, reference.lean, strict=True):
+            body.locking.volume[image] += body.locking.volume[ghost] if lean == 0.0 else 0.0
     if isinstance(body.thermal, Thermal):
         begin_heat(space, reference.X.astype(float), body.particles.m.astype(float), body.thermal, reference.warmth)
 

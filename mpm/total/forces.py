@@ -173,13 +173,16 @@ def average_volume_average(locking, space, body, reference, chunk):
             for k in range(D):
                 zero[k, p] = 0.0
         scatter_scalar(space, X, first, count, value, zero, zero, total)
-    ghost, image = reference.ghost, reference.image
-    for k in range(len(ghost)):
-        total[image[k]] += total[ghost[k]]
-    for n in reference.active:
-        total[n] /= locking.volume[n]
+    ghost, image, lean = reference.ghost, reference.image, reference.lean
+    for k in range(len(ghost)):  # behind a wall that sticks nothing is mirrored
+        if lean[k] == 0.0:
+            total[image[k]] += total[ghost[k]]
+    for n in reference.touched:
+        if locking.volume[n] > 0.0:
+            total[n] /= locking.volume[n]
     for k in range(len(ghost) - 1, -1, -1):
-        total[ghost[k]] = total[image[k]]
+        if lean[k] == 0.0:
+            total[ghost[k]] = total[image[k]]
 
 
 @role

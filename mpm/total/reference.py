@@ -31,7 +31,8 @@ class Skin(NamedTuple):
 class Reference(NamedTuple):
     """Nodal state of one body, and weights by the points X of its reference shape.
 
-    Mirrors: node `ghost` outside a wall that the body is bonded to carries `sign` times what its `image` inside does, by direction.
+    Mirrors: node `ghost` outside a wall that the body is bonded to carries `sign` times what its `image` inside does, by direction, and `lean` times what the
+    node `wall` between them does: 0 where the wall slips; where it sticks what makes the spline zero on the wall, and leaves its slopes free.
     """
 
     X: np.ndarray  # (N, D) reference positions of the particles [m]
@@ -46,6 +47,10 @@ class Reference(NamedTuple):
     ghost: np.ndarray  # (G,)
     image: np.ndarray  # (G,)
     sign: np.ndarray  # (G, D)
+    wall: np.ndarray  # (G,)
+    lean: np.ndarray  # (G,)
+    near: np.ndarray  # (W,) nodes that gravity pulls less than their mass, as ghosts are folded on to them,
+    less: np.ndarray  # (W, D) by this part of it
     held: np.ndarray  # (H, 2) (node, direction) that a wall holds
     t: np.ndarray  # (1,) time [s]
     ramp: Any  # mpm.state.Ramp or Within, of load and drag
@@ -58,19 +63,20 @@ class Reference(NamedTuple):
 @kernel
 def mirror(nodes, reference):
     """Continue nodal values to the ghosts, the last first: a ghost may be the image of another."""
-    ghost, image, sign = reference.ghost, reference.image, reference.sign
+    ghost, image, sign, wall, lean = reference.ghost, reference.image, reference.sign, reference.wall, reference.lean
     for k in range(len(ghost) - 1, -1, -1):
         for c in range(sign.shape[1]):
-            nodes[ghost[k], c] = sign[k, c] * nodes[image[k], c]
+            nodes[ghost[k], c] = sign[k, c] * nodes[image[k], c] + lean[k] * nodes[wall[k], c]
 
 
 @kernel
 def fold(nodes, reference):
     """Add what ghosts carry to their images."""
-    ghost, image, sign = reference.ghost, reference.image, reference.sign
+    ghost, image, sign, wall, lean = reference.ghost, reference.image, reference.sign, reference.wall, reference.lean
     for k in range(len(ghost)):
         for c in range(sign.shape[1]):
             nodes[image[k], c] += sign[k, c] * nodes[ghost[k], c]
+            nodes[wall[k], c] += lean[k] * nodes[ghost[k], c]
 
 
 @kernel

@@ -7,6 +7,7 @@ load, where it is by present area, from F(u) at points of the surface (mpm.total
 
 Largest stable step, at rest: frequencies are below those of single particles on their own masses (Fried 1972, for elements),
     omega^2 <= max_p T_p (D lam + 2 mu)/R0,   T_p = largest of sum_i (d_k w_ip)^2/w_ip over directions k,   dt < 2/omega.
+Beside a wall that sticks, where splines are other ones, T is that of all points of a span together (clamped_spread).
 Quadratic splines have T_p h^2 = 4.5 at Gauss points of whole spans and at most 6 at cut ones, so 2/omega is 0.94 to 0.82 h sqrt(R0/(D lam + 2 mu));
 compressed or stressed material is stiffer, in the reference shape by one over the squared stretch. SHARE of it is taken.
 Errors       order 2 in time and in the cell; the energy of a free mode omega swings by (omega dt)^2/4, without drift
@@ -16,11 +17,11 @@ Fails when   waves shorter than two cells matter: nothing damps them
 import numpy as np
 
 from mpm.basis import stencil
-from mpm.boundary import directions
+from mpm.boundary import STICK, directions, extents
 from mpm.integrate.strain import CODE, STEP, STRAIN, WORKED
 from mpm.integrate.traction import share, within
 from mpm.jit import kernel
-from mpm.state import PAD, Axisymmetric
+from mpm.state import PAD, Axisymmetric, Cubic
 from mpm.total.forces import act_on, average_volume, press
 from mpm.total.reference import fold, hold, mirror
 from mpm.total.strain import answer_all
@@ -63,6 +64,10 @@ def kick(reference, gravity, past, keep, push):
         if load.shape[0] > 0:
             for c in range(D):
                 v[n, c] += now * load[n, c] * inverse
+    near, less = reference.near, reference.less
+    for k in range(len(near)):
+        for c in range(D):
+            v[near[k], c] -= push * less[k, c] * gravity[c]
     hold(v, reference)
 
 
@@ -150,9 +155,70 @@ def hoop_of(space, X):
     return most
 
 
-def courant_of(space, X: np.ndarray, lam: float, mu: float) -> float:
-    """The largest stable step at rest, SHARE of it, in h sqrt(R0/(D lam + 2 mu))."""
-    D, T = directions(space), spread_of(space, X)
+@kernel
+def stencils(space, x, first, w, g):
+    """First node (N, D), weights and their slopes (N, D, K) of points x (N, D)."""
+    for i in range(x.shape[0]):
+        for a in range(x.shape[1]):
+            first[i, a], one, slope, _, _ = stencil(space.basis, x[i, a] / space.h)
+            for k in range(len(one)):
+                w[i, a, k], g[i, a, k] = one[k], slope[k] / space.h
+
+
+def sampled(space, x: np.ndarray):
+    """(first, w, g) of points."""
+    N, D = x.shape
+    K = 4 if isinstance(space.basis, Cubic) else 3
+    found = np.zeros((N, D), np.int64), np.zeros((N, D, K)), np.zeros((N, D, K))
+    stencils(space, np.ascontiguousarray(x), *found)
+    return found
+
+
+def leaning(space) -> float:
+    """What a ghost behind a wall that sticks takes of the node on the wall, beside -1 of its image: the spline is then zero on the wall."""
+    _, w, _ = sampled(space, np.zeros((1, directions(space))))
+    return float(-w[0, 0, 1] / w[0, 0, 0])
+
+
+def clamped_spread(space, X: np.ndarray, V: np.ndarray, walls: np.ndarray) -> float:
+    """T beside walls that stick, where splines are other ones: of all points of a span together, on the mass that they give the nodes [1/m2]; 0 without."""
+    (N, D), ends = X.shape, np.array(extents(space)) - 1 - PAD
+    first, w, g = sampled(space, X)
+    K, lean, held = w.shape[2], leaning(space), w.copy()
+    beside = np.zeros(N, bool)
+    for a in range(D):
+        for side in range(2):
+            ghost = PAD - 1 - first[:, a] if side == 0 else ends[a] + 1 - first[:, a]
+            some = np.flatnonzero((ghost == 0 if side == 0 else ghost == K - 1) & (walls[a, side] == STICK))
+            at, on, image = (0, 1, 2) if side == 0 else (K - 1, K - 2, K - 3)
+            for field, along, across in ((w, lean, -1.0), (g, lean, -1.0), (held, 0.0, 1.0)):
+                field[some, a, on] += along * field[some, a, at]
+                field[some, a, image] += across * field[some, a, at]
+                field[some, a, at] = 0.0
+            beside[some] = True
+    most = 0.0
+    _, span = np.unique(first[beside], axis=0, return_inverse=True)
+    for number in range(span.max(initial=-1) + 1):
+        p = np.flatnonzero(beside)[span.ravel() == number]
+        mass = V[p] @ product(held[p])
+        used = mass > 0
+        for k in range(D):
+            B = product(np.where(np.arange(D)[None, :, None] == k, g[p], w[p]))[:, used] / np.sqrt(mass[used])
+            most = max(most, float(np.linalg.norm(np.sqrt(V[p])[:, None] * B, 2) ** 2))
+    return most
+
+
+def product(lines: np.ndarray) -> np.ndarray:
+    """Values (P, K^D) of products of those by direction (P, D, K)."""
+    whole = lines[:, 0]
+    for a in range(1, lines.shape[1]):
+        whole = (whole[:, :, None] * lines[:, a, None, :]).reshape(len(lines), -1)
+    return whole
+
+
+def courant_of(space, X: np.ndarray, V: np.ndarray, walls: np.ndarray, lam: float, mu: float) -> float:
+    """The largest stable step at rest, SHARE of it, in h sqrt(R0/(D lam + 2 mu)); walls (3, 2): kinds of those that the body lies on."""
+    D, T = directions(space), max(spread_of(space, X), clamped_spread(space, X, V, walls))
     stiff = D * lam + 2 * mu
     if isinstance(space, Axisymmetric):
         T, stiff = max(T, hoop_of(space, X)), 3 * lam + 2 * mu

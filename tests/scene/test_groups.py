@@ -81,6 +81,13 @@ def test_a_beam_bends_where_a_block_is_pressed(lower, upper, walls, lever):
     assert bool(told.drop) == (bears and lever * told.value < 1e-3) and ("bends" in told.meaning) == (lever > 1)
 
 
+@pytest.mark.parametrize(("nu", "locking", "said"), [(0.3, "fbar", "leave `locking` out"), (0.3, None, ""), (0.499, None, "locks"), (0.499, "fbar", "")])
+def test_volume_locks_near_a_half_and_f_bar_costs_below(nu, locking, said):
+    config = BLOCK | {"surfaces": [], "materials": {"m": {"density": 1, "elastic": {"hencky": {"E": 1e5, "nu": nu}}}}}
+    told = found(config, {"method.locking": locking} if locking else {}).get("Poisson")
+    assert (told is None) == (not said) and (told is None or (said in told.meaning and told.value == pytest.approx(nu)))
+
+
 def test_gravity_is_not_dropped_where_it_is_all_that_moves_a_body():
     config = BLOCK | {"surfaces": [], "materials": {"m": {"density": 1e-3, "elastic": BLOCK["materials"]["m"]["elastic"]}}}
     assert found(config)["gravity/stiffness"].drop == "gravity"

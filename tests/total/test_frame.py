@@ -12,6 +12,7 @@ from mpm.error import kirchhoff
 from mpm.scene.build import build
 from mpm.scene.point import run_zero
 from mpm.scene.refusal import SceneError
+from mpm.total.reference import displacement_at
 
 SOFT = {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}
 UNIT = 1e-14  # moduli so small that no force changes the motion
@@ -165,6 +166,28 @@ def test_flow_is_that_of_a_material_point(core, dimension, form):
     assert np.abs(np.sort(strains(end.space, particles.B), axis=1) - e).max() < 1e-9
     assert particles.J == pytest.approx(exact["J_min"], rel=1e-10)
     assert run.finals["dissipation_total"] / np.sum(particles.V0) == pytest.approx(exact["dissipation_total"], rel=1e-8)
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("basis", ["quadratic", "cubic"])
+@pytest.mark.parametrize("wall", ["left", "right"])
+def test_a_wall_that_sticks_leaves_slopes_and_curvature_free(basis, wall):
+    """Nothing moves on it, and s + s^2 of the distance s from it is met exactly in the first cells too; a mirror would have no curvature."""
+    lower, upper = ([0.0, 0.3], [0.62, 0.71]) if wall == "left" else ([0.38, 0.3], [1.0, 0.71])
+    scene = build(mpm.load({
+        "grid": {"dimension": 2, "size": [1.0, 1.0], "cell": 0.1, "basis": basis}, "bodies": {"b": {"shape": box(lower, upper), "material": "m"}},
+        "materials": {"m": SOFT}, "walls": {wall: "stick"}, "time": {"end": 1}, "method": {"frame": "total"},
+    }))  # fmt: skip
+    reference, shape = scene.references[0], np.array(scene.space[1:3])
+    place = (np.stack(np.unravel_index(np.arange(len(reference.u)), shape), axis=-1) - 2) * 0.1
+    far = lambda x: x if wall == "left" else 1 - x  # noqa: E731
+    square = 0.1**2 * {"quadratic": 1 / 4, "cubic": 1 / 3}[basis]
+    reference.u[:, :2] = (far(place[:, 0]) + far(place[:, 0]) ** 2 - square)[:, None]
+    reference.u[reference.ghost] = 7.0  # what steps leave to the mirror
+    x = np.array([[far(s), 0.5] for s in (0.0, 0.02, 0.06, 0.13, 0.4)])
+    assert displacement_at(scene.space, reference, x)[:, 1] == pytest.approx([s + s * s for s in (0.0, 0.02, 0.06, 0.13, 0.4)], abs=1e-14)
+    pulled = reference.m[reference.active].sum() - reference.m[reference.near] @ reference.less[:, 0]
+    assert pulled == pytest.approx(0.41 * (0.62 - 0.1 * {"quadratic": 1 / 6, "cubic": 1 / 4}[basis]), rel=1e-12)  # of the splines that are zero on the wall
 
 
 def test_what_hangs_near_a_wall_that_the_body_lies_on_is_refused():
