@@ -182,6 +182,8 @@ def leaning(space) -> float:
 
 def clamped_spread(space, X: np.ndarray, V: np.ndarray, walls: np.ndarray) -> float:
     """T beside walls that stick, where splines are other ones: of all points of a span together, on the mass that they give the nodes [1/m2]; 0 without."""
+    if not (walls == STICK).any():
+        return 0.0
     (N, D), ends = X.shape, np.array(extents(space)) - 1 - PAD
     first, w, g = sampled(space, X)
     K, lean, held = w.shape[2], leaning(space), w.copy()

@@ -107,7 +107,15 @@ EXACT = {
     "spinning_disc": spinning_disc.exact,
 }
 
-LOADED = ("cooks_membrane", "cantilever", "traction_bar", "thermal_shock", "thermal_cylinder", "hertz", "pressed_cylinder")  # scenes that have loads of their own
+LOADED = (
+    "cooks_membrane",
+    "cantilever",
+    "traction_bar",
+    "thermal_shock",
+    "thermal_cylinder",
+    "hertz",
+    "pressed_cylinder",
+)  # scenes that have loads of their own
 SOURCED = ("heated_slab", "formulas")  # and sources
 
 

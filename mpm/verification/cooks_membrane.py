@@ -123,7 +123,7 @@ def exact(experiment):
 
     size = float(np.sqrt(np.mean(np.sum(u**2, axis=2))))
 
-    def measure(X, V, found):
+    def measure(X, V, found, t):
         X = X - vertices[0]
         wrong = found["displacement"] - deflection(u, X)
         near = np.argsort(np.sum((X - TIP) ** 2, axis=1))[:9]

@@ -65,7 +65,7 @@ def exact(experiment):
         p.v[:, 0] = experiment.exact.amplitude * np.sin(k * p.x[:, 0])
         return one
 
-    def measure(X, V, found):
+    def measure(X, V, found, t):
         s, c = np.sin(k * X[:, 0]), np.cos(k * X[:, 0])
         warm = found["temperature"][:, 0] - body.temperature
         return {"amplitude_displacement": V @ (s * found["displacement"][:, 0]) / (V @ s**2), "amplitude_temperature": V @ (c * warm) / (V @ c**2)}
