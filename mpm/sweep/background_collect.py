@@ -120,7 +120,7 @@ class Gather:
                     self.paid(self.child.began)
             elif ran > self.ran and time.monotonic() - self.ended > max(EVERY, SHARE * self.cost):
                 self.ran = ran
-                if self.small:
+                if len(self.plan.cases) * self.each <= SMALL:  # else the last one is made beside, and so are those on the way
                     began = time.monotonic()
                     self.here()
                     self.paid(began)
