@@ -58,10 +58,12 @@ def test_every_array_of_particles_is_named(core):
     solid = core.config(2)["materials"]["solid"]
     latched = solid | {"expansion": {"latched": {"c": 0.05, "reference": 300, "set": 450}}, "heating": {"dissipation": {}}, "flow": FLOW}
     load = [{"of": "body", "side": "right", "traction": {"nominal": [0.1, 0.0], "ramp": 0.1}}]
+    pressed = [{"of": "body", "side": "right", "traction": {"pressure": 0.1}}]
     seen = set()
     sets = {"ellipse": FLOW["ellipse"] | {"M": {"set": {"raw": 0.05, "baked": 0.1, "rate": 0.1}}}}
     given = [{"of": "body", "heat": {"formula": "1 + x"}, "force": [{"formula": "y"}, 0.0]}]
-    for sections in ({"loads": load}, {"materials": {"solid": latched}}, {"materials": {"solid": solid | {"flow": sets}}}, {"sources": given}):
+    materials = ({"solid": latched}, {"solid": solid | {"flow": sets}})
+    for sections in ({"loads": load}, {"loads": pressed}, *({"materials": one} for one in materials), {"sources": given}):
         body = build(core.experiment(2, {"method.particles": 3}, **sections)).bodies[0]
         N = len(body.particles.m)
         found = {(type(part), name) for part in parts(body) for name, a in zip(part._fields, part, strict=True) if isinstance(a, np.ndarray) and len(a) == N}
