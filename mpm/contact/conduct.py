@@ -163,6 +163,12 @@ def blocks_linked(operator):
     return operator.whole
 
 
+@kernel
+def solve_linked(operator, columns, between, weight, r, change, tolerance):
+    """conjugate_gradients of this room: a kernel is kept by the room that it is called from, with all that it holds (mpm.fingerprint)."""
+    return conjugate_gradients(operator, columns, between, weight, r, change, tolerance)
+
+
 def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order: int, tolerance: float, back):
     """Advance the temperatures of the bodies numbered `which` by dt; nodes (B, FIELDS, n) zero before and after, walls (B, 3, 2).
 
@@ -190,7 +196,7 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
         base = np.concatenate([nodes[b, 2, one[b][2]] for b in which])
         push(at, links.t, -step * links.rate * drops(at, links.t, base), r)
         change = np.empty(len(r))
-        count = conjugate_gradients(Linked(rows, whole, at, links.t, step * links.rate), columns, made[0][2], weight, r, change, tolerance)
+        count = solve_linked(Linked(rows, whole, at, links.t, step * links.rate), columns, made[0][2], weight, r, change, tolerance)
         if count < 0:
             for b in which:
                 clean(space, nodes[b], one[b][0])
