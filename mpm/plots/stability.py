@@ -17,6 +17,7 @@ from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, figure, plain_ticks, 
 from mpm.records.variables import describe
 
 WITHIN, BEYOND = OKABE_ITO[0], OKABE_ITO[1]
+LABEL = 100  # letters below a row of panels
 COLUMNS = 4
 LINES = (OKABE_ITO[3], OKABE_ITO[4], OKABE_ITO[5], "#7a5195")
 SAFE = OKABE_ITO[2]
@@ -58,8 +59,10 @@ class Figure:
                 self.panel(ax, index)
             else:
                 ax.set_visible(False)
-        for ax in axes[-1]:
-            ax.set_xlabel(self.axis("across"))
+        for column in axes.T:
+            lowest = [ax for ax in column if ax.get_visible()][-1]
+            lowest.set_xlabel(words.wrapped(self.axis("across"), LABEL // columns))
+            lowest.tick_params(labelbottom=True)
         for ax in axes[:, 0]:
             ax.set_ylabel(self.axis("boundary"))
         self.legend(fig, axes)
