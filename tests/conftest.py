@@ -1,7 +1,7 @@
 """Small scenes that the tests of the core share. One set of physics for most of them, so that each dimension and transfer compiles once.
 
-Tests with `pytest.mark.plain` run in a child process for each module, without the compiler: their small scenes take a second in plain Python, where compiling
-their physics would take twenty. tests/test_roles.py holds compiled and plain results together.
+Tests with `pytest.mark.plain` run without the compiler, each module in a fork of tests/plain_server.py: their small scenes take a second in plain Python, where
+compiling their physics would take twenty. tests/test_roles.py holds compiled and plain results together.
 """
 
 import copy

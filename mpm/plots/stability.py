@@ -13,11 +13,11 @@ from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.lines import Line2D
 
 from mpm.plots import words
+from mpm.plots.axis import room
 from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, figure, plain_ticks, styled
 from mpm.records.variables import describe
 
 WITHIN, BEYOND = OKABE_ITO[0], OKABE_ITO[1]
-LABEL = 100  # letters below a row of panels
 COLUMNS = 4
 LINES = (OKABE_ITO[3], OKABE_ITO[4], OKABE_ITO[5], "#7a5195")
 SAFE = OKABE_ITO[2]
@@ -61,7 +61,7 @@ class Figure:
                 ax.set_visible(False)
         for column in axes.T:
             lowest = [ax for ax in column if ax.get_visible()][-1]
-            lowest.set_xlabel(words.wrapped(self.axis("across"), LABEL // columns))
+            lowest.set_xlabel(words.wrapped(self.axis("across"), int(room(lowest))))
             lowest.tick_params(labelbottom=True)
         for ax in axes[:, 0]:
             ax.set_ylabel(self.axis("boundary"))

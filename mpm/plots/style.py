@@ -23,7 +23,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import Formatter, FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from mpm.plots.axis import LETTERS
+from mpm.plots.axis import room
 from mpm.plots.words import number, numbers, wrapped
 from mpm.text import visible
 
@@ -156,8 +156,7 @@ def plain_ticks(axis: Any) -> None:
     """Ticks of a logarithmic axis at 1, 2 and 5 where it spans little, in plain numbers where they read well."""
     low, high = sorted(axis.get_view_interval())
     decades = math.log10(high / low) if low > 0 else 0.0
-    place = axis.axes.get_subplotspec()
-    letters = LETTERS / place.get_gridspec().ncols if axis.axis_name == "x" and place is not None else math.inf
+    letters = room(axis.axes) if axis.axis_name == "x" else math.inf
     closer = ((1.0, 2.0, 5.0), (1.0, 3.0)) if decades < 1.7 else ()
     subs = next((subs for subs in closer if decades * len(subs) * (len(number(high)) + 1) < letters), (1.0,))
     axis.set_major_locator(LogLocator(subs=subs, numticks=12))
