@@ -5,10 +5,10 @@ counts it, 1 + branches), circles (groups of modules that reach one another by i
 public functions and classes without a docstring (the kinds of a role have the role's), and public functions whose docstring names a unit.
 """
 
+import argparse
 import ast
 import re
 import statistics
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -96,7 +96,13 @@ def largest(sizes: dict[str, int]) -> str:
 
 
 def main() -> None:
-    columns = [measure(Path(folder)) for folder in sys.argv[1:] or ["."]]
+    parser = argparse.ArgumentParser(prog="python -m mpm.benchmarks.house", description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="*", type=Path, default=[Path()], metavar="FOLDER", help="checkouts; the current folder unless given")
+    folders = parser.parse_args().folders
+    for folder in folders:
+        if next((folder / "mpm").glob("*.py"), None) is None:
+            parser.error(f"{folder} is no checkout: there is no Python in {folder / 'mpm'}")
+    columns = [measure(folder) for folder in folders]
     for what in columns[0]:
         print(f"{what:44}", " | ".join(f"{column[what]:60}" for column in columns))
 

@@ -5,8 +5,8 @@ the chart which meets the tolerance with the same model (interleaved, least of R
 in sample for the method; the cell comes from pilots.
 """
 
+import argparse
 import math
-import sys
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -82,9 +82,14 @@ def main() -> None:
     from mpm.benchmarks.figures import STUDIES
     from mpm.config import load
 
+    parser = argparse.ArgumentParser(prog="python -m mpm.benchmarks.promises", description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(PROBLEMS)}; all unless given")
+    names = parser.parse_args().names or PROBLEMS
+    if unknown := [name for name in names if name not in PROBLEMS]:
+        parser.error(f"no charted problem is called {', '.join(unknown)}; there are {', '.join(PROBLEMS)}")
     print("| problem | tolerance | chosen | predicted | true | met | time over cheapest | cheapest charted | planning, s |\n" + "|---" * 9 + "|")
     rows = []
-    for name in sys.argv[1:] or PROBLEMS:
+    for name in names:
         experiment = load(STUDIES / f"{name}.yaml")
         against = rivals(name, experiment)
         for tolerance in TOLERANCES:

@@ -1,5 +1,5 @@
-"""The dataset of a sweep, now and then while it runs and at its end. Small ones are made here; larger ones by a fresh interpreter beside, so that
-the sweep's process does not grow by what a collect takes, hands out points meanwhile, and can leave at once.
+"""The dataset of a sweep, now and then while it runs and at its end. Small ones are made by a fork of the sweep's process, which waits; larger ones by a
+fresh interpreter beside, so that the sweep's process hands out points meanwhile, and can leave at once. It grows by neither.
 
 That interpreter reads the folder as `mpm collect` does, says in a line of JSON what came of it, and ends with its parent.
 """
@@ -8,9 +8,11 @@ import functools
 import importlib
 import json
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -23,7 +25,7 @@ from mpm.sweep.store import Store
 
 EVERY = 30.0  # least seconds between two datasets while running; SHARE times what one took, if that is more
 SHARE = 20
-SMALL = 8_000_000  # bytes of results that are collected in this process: a few tenths of a second
+SMALL = 8_000_000  # bytes of results that are waited for: a few tenths of a second
 QUICK = 200  # points that are collected even when told to leave at once
 LOOK = 0.02  # s between two looks whether it is done
 START = "import json, sys; sys.path[:] = json.loads(sys.argv[2]); from mpm.sweep.collect_apart import main; main()"
@@ -31,6 +33,35 @@ START = "import json, sys; sys.path[:] = json.loads(sys.argv[2]); from mpm.sweep
 
 class NotCollected(Exception):
     """The process that collects died."""
+
+
+def forked(task: Callable[[], bool]) -> bool:
+    """`task()` in a fork, whose memory goes with it (h5py alone takes 10 MB); in this process where that is there already, or threads make a fork unsafe."""
+    if not hasattr(os, "fork") or threading.active_count() > 1 or {"h5py", "numba"} & set(sys.modules):
+        return task()
+    (ours, theirs), (heard, alive) = os.pipe(), os.pipe()
+    if not (child := os.fork()):
+        os.close(alive)
+        threading.Thread(target=lambda: (os.read(heard, 1), os._exit(1)), daemon=True).start()  # ends with its parent, which has the other end
+        try:
+            found: bool | Exception = task()
+        except Exception as error:
+            found = error
+        with open(theirs, "wb") as stream:
+            pickle.dump(found, stream)
+        os._exit(0)
+    os.close(theirs)
+    with open(ours, "rb") as stream:
+        said = stream.read()
+    os.waitpid(child, 0)
+    os.close(alive)
+    os.close(heard)
+    if not said:
+        raise NotCollected("the dataset was not made: the process that makes it died; the points are kept, and the same command tries again")
+    found = pickle.loads(said)
+    if isinstance(found, Exception):
+        raise found
+    return found
 
 
 class Beside:
@@ -87,7 +118,7 @@ class Gather:
 
     @property
     def small(self) -> bool:
-        """Whether it is made here."""
+        """Whether it is waited for."""
         return len(self.lines) * self.each <= SMALL
 
     @property
@@ -107,10 +138,10 @@ class Gather:
         return bool(due(self.store, claimed(self.store.out), self.lines))
 
     def here(self) -> bool:
-        """In this process: whether it was written."""
+        """By a fork: whether it was written."""
         from mpm.sweep.collect import collect
 
-        return collect(self.store, self.plan, claimed(self.store.out), self.lines)
+        return forked(lambda: collect(self.store, self.plan, claimed(self.store.out), self.lines))
 
     def now_and_then(self, ran: int) -> None:
         """Called often while points run, with how many have. Trouble is told, and the sweep goes on."""

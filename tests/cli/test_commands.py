@@ -45,11 +45,11 @@ def test_the_same_again_is_quick_and_needs_no_numba(mpm, write, tmp_path):
 
 
 def test_a_sweep_leaves_numba_to_its_workers(write, tmp_path):
-    """Its own process stays small: kernels and what they need are loaded where points run, and the picture is drawn by another."""
+    """Its own process stays small: kernels and what they need are loaded where points run; the dataset is made and drawn by others."""
     fakes = str(Path(__file__).parents[1] / "fakes")
     code = f"import sys; sys.path.insert(0, {fakes!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'\n"
     code += f"from mpm_cli.main import main; code = main(['sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']); "
-    code += "print(code, sorted({'numba', 'xarray', 'pandas', 'matplotlib'} & set(sys.modules)))"
+    code += "print(code, sorted({'numba', 'xarray', 'pandas', 'matplotlib', 'h5py'} & set(sys.modules)))"
     assert fresh(code, tmp_path)[0].endswith("0 []\n") and (tmp_path / "s/sweep.png").stat().st_size > 1000
 
 

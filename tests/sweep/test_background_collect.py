@@ -174,3 +174,42 @@ def test_it_ends_with_its_parent(tmp_path):
     process.stdin.close()
     assert process.wait(5) == 1
     process.stdout.close()
+
+
+FORKS = """
+import os, signal, sys, time
+from mpm.sweep.background_collect import NotCollected, forked
+
+def disk_full():
+    raise OSError(28, "No space left on device", "sweep.nc")
+
+here = os.getpid()
+assert forked(lambda: os.getpid() != here) is True and forked(lambda: False) is False
+try:
+    forked(disk_full)
+except OSError as error:
+    assert (error.errno, error.filename) == (28, "sweep.nc")
+try:
+    forked(lambda: os.kill(os.getpid(), signal.SIGKILL))
+except NotCollected as error:
+    assert "died" in str(error)
+try:
+    os.waitpid(-1, 0)
+except ChildProcessError:
+    print("none is left", flush=True)
+forked(lambda: (print(os.getpid(), flush=True), time.sleep(60)))
+"""
+
+
+def test_a_dataset_made_by_a_fork():
+    """What it says, what it raises, its death; and it ends with its parent, however that ends."""
+    parent = subprocess.Popen([sys.executable, "-c", FORKS], stdout=subprocess.PIPE, text=True)
+    assert parent.stdout.readline() == "none is left\n"
+    child = int(parent.stdout.readline())
+    parent.kill()
+    parent.wait()
+    state = Path(f"/proc/{child}/stat")
+    gone, end = lambda: not state.exists() or state.read_text().split()[2] == "Z", time.monotonic() + 20
+    while not gone() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert gone()
