@@ -28,6 +28,7 @@ CASES = {  # config, what is compared, what is changed: no output on the way, wh
 }
 SETTINGS = {f"implicit, {tolerance:g}": {"method.mechanics_tolerance": str(tolerance)} for tolerance in (1e-3, 3e-4, 1e-4, 3e-5)}
 SETTINGS |= {f"explicit, S = {S}": {"method.mechanics": "explicit", "time.scale": str(S)} for S in (500, 50, 1)}
+KINDS = {"implicit": "implicit, by tolerance", "explicit": "explicit, time scaled by S"}
 FINE = 1 / 500
 BRIEF, ROUNDS = 20.0, 3
 
@@ -85,17 +86,32 @@ def draw(rows: list[dict], path: Path) -> None:
     with style.styled():
         fig = style.figure("Implicit mechanics beside explicit steps: error against time", 4.6)
         axes = fig.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+        labels = []
         for ax, case in zip(axes, cases, strict=True):
-            ax.set(title=case, xscale="log", yscale="log", xlabel="process time [s]")
-            for kind, colour in zip(("implicit", "explicit"), style.OKABE_ITO, strict=False):
+            ax.set(title=case, xscale="log", yscale="log", xlabel="processor time [s]")
+            ax.margins(x=0.12)
+            for (kind, words), colour in zip(KINDS.items(), style.OKABE_ITO, strict=False):
                 mine = [row for row in rows if row["case"] == case and row["setting"].startswith(kind) and row["error"] != ""]
-                ax.plot([row["seconds"] for row in mine], [100 * row["error"] for row in mine], "o-" if kind == "implicit" else "s:", color=colour, label=kind)
-                for row in mine if kind == "explicit" else mine[:: max(len(mine) - 1, 1)]:  # tolerances stand close: the ends of their line
-                    at, where = (row["seconds"], 100 * row["error"]), {"xytext": (4, 4)} if kind == "explicit" else {"xytext": (-5, -4), "ha": "right"}
-                    ax.annotate(row["setting"].partition(", ")[2], at, textcoords="offset points", fontsize=8, **where)
+                places = [(row["seconds"], 100 * row["error"]) for row in mine]
+                ax.plot(*np.reshape(places, (-1, 2)).T, "o-" if kind == "implicit" else "s:", color=colour, label=words)
+                told = slice(None, None, 1 if kind == "explicit" else max(len(mine) - 1, 1))  # tolerances stand close: the ends of their line
+                labels += [(ax, row["setting"].partition(", ")[2], *place) for row, place in zip(mine[told], places[told], strict=True)]
+        for label in labels:  # now that all limits are known
+            beside(*label)
         axes[0].set_ylabel("largest error of shape [%]")
         axes[0].legend()
         style.save(fig, path)
+
+
+def beside(ax, text: str, x: float, y: float) -> None:
+    """A label at a point, in that of four places where it lies on the least of what is drawn, sides of the frame too."""
+    lines = [ax.transData.transform(line.get_xydata()) for line in ax.lines if len(line.get_xydata())]
+    lines += [ax.transAxes.transform([(side, 0), (side, 1)]) for side in (0, 1)]
+    dense = np.concatenate([np.array([np.interp(np.linspace(0, len(one) - 1, 400), np.arange(len(one)), side) for side in one.T]).T for one in lines])
+    away, (wide, high) = (dense - ax.transData.transform((x, y))) * 72 / ax.figure.dpi, (5.5 * len(text) + 8, 15)  # points
+    right, up = min(((right, up) for up in (1, -1) for right in (1, -1)), key=lambda to: np.sum(np.all((away * to > 1) & (away * to < (wide, high)), axis=1)))
+    ax.annotate(text, (x, y), xytext=(5 * right, 5 * up), textcoords="offset points", fontsize=8, ha="left" if right > 0 else "right",
+                va="bottom" if up > 0 else "top")  # fmt: skip
 
 
 def main() -> None:

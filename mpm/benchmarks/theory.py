@@ -113,9 +113,9 @@ def dataset(cells=(8, 16, 32, 64, 128)) -> Any:
     return xarray.Dataset(
         {
             "fake": ("dt", pic[:, 0], {"units": "W/m/K", "long_name": "fake conductivity of PIC temperatures"}),
-            "fake_theory": ("dt", pic[:, 1], {"units": "W/m/K", "long_name": "R0 alpha h^2/(4 dt)"}),
+            "fake_theory": ("dt", pic[:, 1], {"units": "W/m/K", "long_name": "R₀ α h²/(4 Δt)"}),
             "loss": ("kh", apic[:, 1], {"units": "1", "long_name": "loss of amplitude a step of APIC temperatures"}),
-            "loss_theory": ("kh", 0.024 * apic[:, 0] ** 4, {"units": "1", "long_name": "0.024 (kh)^4"}),
+            "loss_theory": ("kh", 0.024 * apic[:, 0] ** 4, {"units": "1", "long_name": "0.024 (kh)⁴"}),
             "error": (("basis", "cells"), bar, {"units": "1", "long_name": "relative error of displacement at a strain of 0.31"}),
         },
         {"dt": steps, "kh": apic[:, 0], "basis": ["linear", "quadratic", "cubic"], "cells": list(cells)},

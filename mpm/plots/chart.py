@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from mpm.plots.style import DASHES, INK, MARKS, OKABE_ITO, QUIET, figure, heading, legend_below, save, styled
-from mpm.plots.words import wrapped
+from mpm.plots.words import number, wrapped
 
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "<", ">", "h")
 PEER = ("*", "p")
@@ -118,7 +118,7 @@ def finish(ax: Any, data: Any, error: np.ndarray, least: np.ndarray) -> None:
     if own > low:
         ax.axhspan(low, own, color="#eeeeee", zorder=0.5)
         ax.text(0.01, own, " error of the reference itself", transform=ax.get_yaxis_transform(), va="top", color=QUIET, fontsize=8)
-    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{number(100 * value)} %"))
     ax.xaxis.set_major_formatter(FuncFormatter(seconds))
     for axis in (ax.xaxis, ax.yaxis):
         least_shown, most_shown = sorted(axis.get_view_interval())

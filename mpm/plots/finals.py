@@ -144,7 +144,7 @@ def errors(ax: Any, view: View, x: Axis, at: dict[str, int], name: str) -> None:
         ax.plot(x.positions[order], values[order], color=colour, ls=dash, marker="o", clip_on=False, zorder=3)
         said = "root mean square" if each == name else "largest"
         if x.name in ("cell", "step") and (rate := slope(x.values, values)) is not None:
-            said += f", order {rate:.2f}"
+            said += f", order {round(rate, 2) + 0.0:.2f}".replace("-", "−")
         handles.append(Line2D([], [], color=colour, ls=dash, marker="o", ms=4, label=said))
     handles += hollow(ax, view, x, None, at, scale(table(view, names[0], x, None, at)), [OKABE_ITO[0]])
     x.apply(ax)

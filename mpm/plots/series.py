@@ -15,6 +15,8 @@ MOST_LINES = 5
 DOTS = ("o", "s", "D", "^", "v")
 TEMPERATURE = "Temperature"
 LATER = 1.3  # of the run's end
+THIN = 0.015  # of the range of a panel's values: lines closer than that hide one another
+ABOVE = (0, (4, 4))  # dashes through which the line below is seen
 
 
 def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[str, int]) -> None:
@@ -25,10 +27,11 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     if lines is not None:
         indices = picked(lines, at, [i for i in range(lines.size) if any(known(view, name, {**at, lines.dim: i}) for name in names)])
     colours = OKABE_ITO if lines is None else lines.colours()
+    above = coincident(view, names, at) if lines is None else set()
     ended = False
     for i, here in [(0, at)] if lines is None else [(i, {**at, lines.dim: i}) for i in indices]:
         for j, name in enumerate(names):
-            colour, dash = (colours[j % len(colours)], "-") if lines is None else (colours[i], DASHES[j % len(DASHES)])
+            colour, dash = (colours[j % len(colours)], ABOVE if names[j] in above else "-") if lines is None else (colours[i], DASHES[j % len(DASHES)])
             drawn = scale(row(view, name, here))
             ax.plot(clock(time), drawn, color=colour, ls=dash, zorder=3)
             ended |= stopped(ax, view, here, clock(time), drawn, colour)
@@ -45,7 +48,7 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     dots = [dot for j, name in enumerate(names) if (dot := measured(ax, view, name, j, clock, scale, OKABE_ITO[j % len(OKABE_ITO)] if lines is None else INK))]
     if dots and ax.get_xlim()[1] > LATER * clock(time[-1]):
         ax.set_xlim(right=1.03 * clock(time[-1]))  # what was measured long after the run's end answers nothing
-    kinds = entries(view, names, lines) if len(names) > 1 or dots else []
+    kinds = entries(view, names, lines, above) if len(names) > 1 or dots else []
     cross = [Line2D([], [], color=INK, marker="x", ls="None", ms=7, mew=1.8, label="the run ended here")] if ended else []
     values: list[Any] = []
     if lines is not None:
@@ -54,10 +57,18 @@ def panel(ax: Any, view: View, names: list[str], lines: Axis | None, at: dict[st
     legend_below(ax, [values, kinds + dots, cross] if len(kinds + dots) < 4 else [values, kinds, dots, cross])
 
 
-def entries(view: View, names: list[str], lines: Axis | None) -> list[Any]:
+def entries(view: View, names: list[str], lines: Axis | None, above: set[str]) -> list[Any]:
     """Legend entries of the series: colours, or dashes where colours tell the swept value."""
-    looks = [(OKABE_ITO[j % len(OKABE_ITO)], DASHES[0]) if lines is None else (INK, DASHES[j % len(DASHES)]) for j in range(len(names))]
+    own = [ABOVE if name in above else DASHES[0] for name in names]
+    looks = [(OKABE_ITO[j % len(OKABE_ITO)], own[j]) if lines is None else (INK, DASHES[j % len(DASHES)]) for j in range(len(names))]
     return [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in zip(labels(view, names), looks, strict=True)]
+
+
+def coincident(view: View, names: list[str], at: dict[str, int]) -> set[str]:
+    """Series that lie on one before them: heat taken in and heat content, say."""
+    rows = [row(view, name, at) for name in names]
+    width = THIN * np.ptp([value for values in rows for value in values[np.isfinite(values)]] or [0.0])
+    return {names[j] for j in range(len(rows)) if any(np.nanmax(np.abs(rows[j] - other), initial=0.0) <= width for other in rows[:j])}
 
 
 def labels(view: View, names: list[str]) -> list[str]:

@@ -20,7 +20,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import Formatter, FuncFormatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import Formatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from mpm.plots.axis import room
@@ -160,7 +160,7 @@ def plain_ticks(axis: Any) -> None:
     closer = ((1.0, 2.0, 5.0), (1.0, 3.0)) if decades < 1.7 else ()
     subs = next((subs for subs in closer if decades * len(subs) * (len(number(high)) + 1) < letters), (1.0,))
     axis.set_major_locator(LogLocator(subs=subs, numticks=12))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+    axis.set_major_formatter(Plain())
     axis.set_minor_formatter(NullFormatter())
 
 

@@ -14,7 +14,7 @@ def transfers(data: Any, path: Path | str | None = None) -> Any:
         fig = figure("What transfers do by themselves: measured (marks), theory (lines)", 4.2)
         left, middle, right = fig.subplots(1, 3)
         for ax, x, measured, theory, words in (
-            (left, "dt", "fake", "fake_theory", ("heat step, s", "conductivity that is not there, W/m/K")),
+            (left, "dt", "fake", "fake_theory", ("heat step [s]", "conductivity that is not there [W/m/K]")),
             (middle, "kh", "loss", "loss_theory", ("wave number times cell", "loss of amplitude a step")),
         ):
             ax.loglog(data[x], data[theory], color=INK, lw=1.4, label=data[theory].attrs["long_name"])

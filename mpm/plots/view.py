@@ -279,9 +279,10 @@ class View:
         return name.split("_", maxsplit=1)[0], self.series[name].attrs.get("units", "1")
 
     def told(self, name: str) -> bool:
-        """Whether a series is anything beside the others of its unit."""
-        largest = NOTHING * self.largest(self.series[name].attrs.get("units", "1"))
-        return bool(np.nanmax(np.abs(self.series[name].values), initial=0.0) > largest)
+        """Whether a series is anything beside the others of its unit; a momentum, beside that of the whole mass at the largest speed."""
+        most = {one: float(np.nanmax(np.abs(self.series[one].values), initial=0.0)) for one in (name, "mass_total", "velocity_max") if one in self.series}
+        whole = most.get("mass_total", 0.0) * most.get("velocity_max", 0.0) if name.startswith("momentum") else 0.0
+        return most[name] > NOTHING * max(whole, self.largest(self.series[name].attrs.get("units", "1")))
 
     def families(self) -> list[list[str]]:
         """Series that share a panel: of one family and one unit, as energies or temperatures do; without those that are nothing, if others are not."""

@@ -185,7 +185,8 @@ def errors(experiment: Any, tree: Any) -> tuple[np.ndarray, np.ndarray | None, s
         from mpm.study.richardson import against_limit, observed
 
         over = "how much each changes in the run" if experiment.chart.scale is None else f"{experiment.chart.scale:.4g}"
-        return against_limit(experiment, tree)[0], None, f"error of {', '.join(observed(experiment))} against the Richardson limit, over {over}"
+        names = [str(root[name].attrs.get("long_name", name)).partition(";")[0] if name in root else name for name in observed(experiment)]
+        return against_limit(experiment, tree)[0], None, f"error of {' and '.join(names)} against the Richardson limit, over {over}"
     wanted = wanted_errors(experiment, root.data_vars)
     scale = 1.0 if all(key in RELATIVE for key in wanted) else scale_of(experiment, tree)
     ok = root.status.values == OK

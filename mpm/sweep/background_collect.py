@@ -8,7 +8,6 @@ import functools
 import importlib
 import json
 import os
-import pickle
 import subprocess
 import sys
 import tempfile
@@ -39,29 +38,41 @@ def forked(task: Callable[[], bool]) -> bool:
     """`task()` in a fork, whose memory goes with it (h5py alone takes 10 MB); in this process where that is there already, or threads make a fork unsafe."""
     if not hasattr(os, "fork") or threading.active_count() > 1 or {"h5py", "numba"} & set(sys.modules):
         return task()
-    (ours, theirs), (heard, alive) = os.pipe(), os.pipe()
+    (ours, theirs), (parent, alive) = os.pipe(), os.pipe()
     if not (child := os.fork()):
-        os.close(alive)
-        threading.Thread(target=lambda: (os.read(heard, 1), os._exit(1)), daemon=True).start()  # ends with its parent, which has the other end
         try:
-            found: bool | Exception = task()
-        except Exception as error:
-            found = error
-        with open(theirs, "wb") as stream:
-            pickle.dump(found, stream)
-        os._exit(0)
+            os.close(alive)
+            threading.Thread(target=lambda: (os.read(parent, 1), os._exit(1)), daemon=True).start()  # ends with its parent, which has the other end
+            with open(theirs, "w", encoding="utf-8") as stream:
+                json.dump(told(task), stream)
+        finally:
+            os._exit(0)
     os.close(theirs)
-    with open(ours, "rb") as stream:
+    with open(ours, encoding="utf-8") as stream:
         said = stream.read()
-    os.waitpid(child, 0)
+    _, status = os.waitpid(child, 0)
     os.close(alive)
-    os.close(heard)
-    if not said:
+    os.close(parent)
+    if os.WIFSIGNALED(status):
         raise NotCollected("the dataset was not made: the process that makes it died; the points are kept, and the same command tries again")
-    found = pickle.loads(said)
-    if isinstance(found, Exception):
-        raise found
-    return found
+    return heard(json.loads(said)) if said else task()  # what is wrong with the task is raised here
+
+
+def told(task: Callable[[], bool]) -> dict[str, Any]:
+    """What came of a task, as JSON can say it: what it returned, or the OSError that it met."""
+    try:
+        return {"written": task()}
+    except OSError as error:
+        if error.errno is None:
+            raise
+        return {"errno": error.errno, "strerror": error.strerror, "filename": error.filename}
+
+
+def heard(found: dict[str, Any]) -> bool:
+    """The same in the process that asked."""
+    if "errno" in found:
+        raise OSError(found["errno"], found["strerror"], found["filename"])
+    return bool(found["written"])
 
 
 class Beside:
@@ -84,9 +95,7 @@ class Beside:
             found = json.loads(said)
         except ValueError:
             raise NotCollected(f"the dataset was not made: {words}; the points are kept, `mpm collect {self.out}` tries again") from None
-        if "errno" in found:
-            raise OSError(found["errno"], found["strerror"], found["filename"])
-        return found["written"]
+        return heard(found)
 
     def end(self) -> None:
         """Stop it, and remove what it left half written."""

@@ -6,9 +6,9 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from typing import Any
 
 from mpm.sweep.api import collect_folder
+from mpm.sweep.background_collect import told
 
 
 def main() -> None:
@@ -16,12 +16,6 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # they reach the whole group; what to do about them is the parent's choice
         signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=lambda: (sys.stdin.buffer.read(), os._exit(1)), daemon=True).start()
-    try:
-        found: dict[str, Any] = {"written": collect_folder(Path(sys.argv[1]))[1]}
-    except OSError as error:
-        if error.errno is None:
-            raise
-        found = {"errno": error.errno, "strerror": error.strerror, "filename": error.filename}
-    sys.stdout.write(json.dumps(found))
+    sys.stdout.write(json.dumps(told(lambda: collect_folder(Path(sys.argv[1]))[1])))
     sys.stdout.flush()
     os._exit(0)

@@ -159,6 +159,16 @@ def test_series_in_one_legend_have_names_of_their_own(tree):
     assert {"force, along x", "force, along y"} <= set(texts(overview(tree({}, {"force_bottom_x": 1.0}, series, time=time))))
 
 
+def test_a_line_that_lies_on_another_lets_it_through(tree):
+    from matplotlib.legend import Legend
+
+    time = np.linspace(0, 1, 6)
+    series = {"temperature_max": 300 + time, "temperature_mean": 300 + 0.999 * time, "temperature_min": 300 + 0.9 * time}
+    ax = mpm.plots.over_time(tree({}, {"temperature_max": 301.0}, series, time=time), list(series)).axes[0]
+    assert [line.is_dashed() for line in ax.lines] == [False, True, False]
+    assert [line.is_dashed() for legend in ax.findobj(Legend) for line in legend.get_lines()] == [False, True, False]
+
+
 def test_what_no_point_reached_is_told_under_the_figure(tree):
     time = np.linspace(0, 10, 11)
     finals = {"temperature_mean": [300.0, 310.0], "time_to_centre_95_degC": [np.nan, np.nan]}
@@ -274,6 +284,21 @@ def test_round_off_and_what_never_changes_is_no_trend(tree):
     assert overview(made).axes[0].get_ylabel() == "Mean temperature [°C]"
     low, high = mpm.plots.over_time(made, "energy_kinetic").axes[0].get_ylim()
     assert high - low > 1e9 * 1e-21
+
+
+def test_a_momentum_of_round_off_is_no_trend(tree):
+    time = np.linspace(0, 1, 6)
+    series = {"momentum_x": 1e-19 * time, "momentum_y": -2e-19 * time, "mass_total": 3 + 0 * time, "velocity_max": 0.006 * time, "error_l2": 0.1 * time}
+    said = [ax.get_ylabel() for ax in panels(overview(tree({}, {"error_l2": 0.1}, series, time=time)))]
+    assert not any("omentum" in text for text in said) and any("speed" in text for text in said)
+    series["momentum_x"] *= 1e12
+    assert any("omentum" in ax.get_ylabel() for ax in panels(overview(tree({}, {"error_l2": 0.1}, series, time=time))))
+
+
+def test_ticks_of_a_narrow_logarithmic_axis_tell_apart(tree):
+    ax = panels(overview(tree({"cell": np.array([0.1, 0.2, 0.4])}, {"error_l2": np.array([48.505, 48.495, 48.47])})))[0]
+    shown = [text.get_text() for text in ax.get_yticklabels() if text.get_text()]
+    assert ax.get_yscale() == "log" and len(shown) > 2 and len(set(shown)) == len(shown)
 
 
 def test_books_that_hold_what_they_miss_are_not_drawn(tree):

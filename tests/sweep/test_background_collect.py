@@ -194,6 +194,10 @@ try:
 except NotCollected as error:
     assert "died" in str(error)
 try:
+    forked(lambda: 1 / 0)
+except ZeroDivisionError:
+    pass
+try:
     os.waitpid(-1, 0)
 except ChildProcessError:
     print("none is left", flush=True)
