@@ -115,15 +115,17 @@ class Figure:
         low, high = np.min(self.points.along.values), np.max(self.points.along.values)
         within, after = self.root.within.values[index], self.root.beyond.values[index]
         known = np.isfinite(within) & np.isfinite(after)
-        edge = np.where(known, self.root.boundary.values[index], np.where(np.isnan(after), high if self.up else low, low if self.up else high))
+        room = (high / low) ** 0.04 if self.log_y else 0.04 * (high - low)
+        limits = (low / room, high * room) if self.log_y else (low - room, high + room)
+        first, last = limits if self.up else limits[::-1]
+        edge = np.where(known, self.root.boundary.values[index], np.where(np.isnan(after), last, first))  # where none failed nothing is shaded
         far = high * 10 if self.up else (low / 10 if self.log_y else low - abs(high))
         ax.fill_between(self.x, edge, far, color=BEYOND, alpha=0.10, lw=0, zorder=0)
         ax.plot(self.x, np.where(known, self.root.boundary.values[index], np.nan), "-o", color=INK, ms=3.5, lw=2.2, zorder=4)
         if "expected" in self.root:
             for line, look in enumerate(self.looks()):
                 ax.plot(self.x, self.root.expected.values[line, index], lw=1.9, zorder=5, **look)
-        room = (high / low) ** 0.04 if self.log_y else 0.04 * (high - low)
-        ax.set_ylim(*((low / room, high * room) if self.log_y else (low - room, high + room)))
+        ax.set_ylim(*limits)
         if self.labels is not None:
             ax.set_xticks(self.x, self.labels)
 

@@ -133,13 +133,19 @@ def with_units(text: str, units: str) -> str:
 
 
 def wrapped(text: str, width: int) -> str:
-    """A label in lines of about `width` letters."""
+    """A label in lines of about `width` letters, no more than it needs, and these about as long as one another."""
+    lines = broken(text, width)
+    return "\n".join(next(narrow for less in range(1, width + 1) if len(narrow := broken(text, less)) == len(lines)))
+
+
+def broken(text: str, width: int) -> list[str]:
+    """Lines of a text, each as full as `width` letters allow."""
     lines = [""]
     for word in text.split(" "):
         if lines[-1] and len(lines[-1]) + len(word) >= width:
             lines.append("")
         lines[-1] = f"{lines[-1]} {word}".strip()
-    return "\n".join(lines)
+    return lines
 
 
 def reason(status: str, error: str) -> str:
