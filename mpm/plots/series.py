@@ -146,11 +146,16 @@ def stopped(ax: Any, view: View, at: dict[str, int], time: np.ndarray, values: n
 
 
 def levels(ax: Any, view: View, name: str) -> None:
-    """A thin line at each threshold of a probe."""
+    """A thin line at each threshold of a probe, its number at the end where fewer lines pass."""
     for _, celsius in view.thresholds(name):
+        (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+        lines = [np.array(line.get_data(), float) for line in ax.lines if line.get_transform() == ax.transData and len(line.get_xdata())]
+        drawn = [[np.interp(np.linspace(0, len(side) - 1, 20 * len(side)), np.arange(len(side)), side) for side in line] for line in lines]
+        near = np.concatenate([x[(y > celsius) & (y < celsius + 0.08 * (high - low))] for x, y in drawn] or [np.zeros(0)])
+        late = np.sum(near < left + 0.12 * (right - left)) > np.sum(near > right - 0.12 * (right - left))
         ax.axhline(celsius, color=QUIET, lw=0.8, ls=(0, (1, 2)), zorder=1)
-        at = {"xycoords": ("axes fraction", "data"), "xytext": (4, 3), "textcoords": "offset points"}
-        text = ax.annotate(f"{words.number(celsius)} °C", (0.0, celsius), color=QUIET, fontsize=8.5, zorder=6, **at)
+        at = {"xycoords": ("axes fraction", "data"), "xytext": (-4 if late else 4, 3), "textcoords": "offset points", "ha": "right" if late else "left"}
+        text = ax.annotate(f"{words.number(celsius)} °C", (float(late), celsius), color=QUIET, fontsize=8.5, zorder=6, **at)
         text.set_path_effects([withStroke(linewidth=3, foreground="white")])  # lines may pass behind it
 
 
