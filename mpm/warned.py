@@ -20,6 +20,7 @@ KINDS = {
     "depth": "smaller cells, a longer run, or leave the exchange out where hardly anything is conducted",
     "near": "let them meet for heat to pass, or take cells smaller than the gap",
     "late": "a longer `time.end`, or an earlier `from`",
+    "ring": "shorter heat steps (`method.heat_step`), a larger `time.scale`, or `method.mechanics: implicit`",
 }
 
 

@@ -196,9 +196,20 @@ def test_a_probe_whose_particle_is_gone(core):
     assert planted(core, experiment, lambda body: None) == ()
 
 
+@pytest.mark.parametrize(("changes", "steps", "told"), [({}, 100, True), ({}, 40_000, False), ({"expansion": None}, 100, False), ({"flow": None}, 100, False)])
+def test_what_expands_rings_between_long_heat_steps(changes, steps, told):
+    """4 m in which sound goes 1.9 m/s: 100 heat steps in 1000 s are 4.7 passages each, and 100 K swell it past its yield; 40 000 are short ones."""
+    solid = SOLID | {"expansion": {"linear": {"coefficient": 0.1, "reference": 300.0}}} | changes
+    experiment = scene(0.0, 4.0, materials={"solid": {key: law for key, law in solid.items() if law}}, time={"end": 1000.0}, output={"every": 1000.0},
+                       surfaces=[{"of": "bar", "side": "right", "convection": {"beta": 1.0, "outside": 400.0}}])  # fmt: skip
+    found = list(LOOKS["ring"](experiment, SimpleNamespace(facts={"heat_steps": steps})))
+    assert bool(found) is told
+    assert not told or "4.7 times" in found[0]
+
+
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, tests/scene/test_scaling.py, tests/rigid/test_guarded.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
+    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late", "ring"} and set(LOOKS) | {"temperature", "inertia", "torn"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):

@@ -32,9 +32,7 @@ def hindered(experiment: Any) -> str:
     found += [wrong for name, material in one.materials.items() for wrong in frame_material(one, name, material)]
     if found:
         return found[0].message
-    if one.tools:
-        return "the total frame knows no tools yet"
-    return "implicit mechanics is known in the updated frame only" if one.method.mechanics == "implicit" else ""
+    return "the total frame knows no tools yet" if one.tools else ""
 
 
 def frame(experiment: Any) -> Iterator[Finding]:

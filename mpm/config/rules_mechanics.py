@@ -46,8 +46,6 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         return
     if len(experiment.bodies) > 1:
         yield Finding(at, "implicit mechanics knows one body only, yet", EXPLICIT, given="implicit")
-    if known(lambda: method.frame == "total"):
-        yield Finding(("method", "frame"), "implicit mechanics is known in the updated frame only", ["updated", EXPLICIT], on_key=True)
     if known(lambda: grid.basis != "quadratic"):
         yield Finding(("grid", "basis"), "implicit mechanics is known on quadratic splines only", ["quadratic", EXPLICIT], on_key=True)
     if known(lambda: method.transfer.kind != "apic"):

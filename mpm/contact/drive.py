@@ -39,13 +39,13 @@ class Drive:
             now = one.turning[0] <= when[0] + 0.5 * dt < one.turning[1]
             self.tools.spin[t] = one.spin if now else 0.0
 
-    def pace(self, start: float, span: float) -> float:
-        """The fastest that any place on a tool may go from `start` on for `span` [m/s]."""
-        return max(self.fastest(t, start, span) for t in range(len(self.told)))
+    def pace(self, start: float, span: float, pushed: float) -> float:
+        """The fastest that any place on a tool may go from `start` on for `span`, forces acting for `pushed` [m/s]."""
+        return max(self.fastest(t, start, span, pushed) for t in range(len(self.told)))
 
-    def fastest(self, t: int, start: float, span: float) -> float:
+    def fastest(self, t: int, start: float, span: float, pushed: float) -> float:
         """Of tool t."""
-        one, rate = self.told[t], float(np.linalg.norm(self.tools.v[t])) + span * float(np.linalg.norm(self.tools.force[t])) * self.tools.light[t]
+        one, rate = self.told[t], float(np.linalg.norm(self.tools.v[t])) + pushed * float(np.linalg.norm(self.tools.force[t])) * self.tools.light[t]
         if len(one.times) > 1:
             speeds = np.linalg.norm(np.diff(one.path, axis=0), axis=1) / np.diff(one.times)
             rate = max([rate, *speeds[(one.times[1:] > start) & (one.times[:-1] < start + span)]])

@@ -142,7 +142,11 @@ class Meeting:
 
     def pace(self, time: float, span: float) -> float:
         """The fastest that a tool may go from `time` on for `span` [m/s]."""
-        return 0.0 if self.drive is None else self.drive.pace(time, span)
+        return self.stride(time, span, span)
+
+    def stride(self, time: float, span: float, pushed: float) -> float:
+        """The same where forces act for `pushed` [s] alone."""
+        return 0.0 if self.drive is None else self.drive.pace(time, span, pushed)
 
     def near(self, travel: float, time: float) -> bool:
         """Whether anything may be near while no particle and no tool moves farther than `travel` [m] from `time` on."""

@@ -2,6 +2,7 @@
 
 Each step minimises an incremental potential over nodal displacements, by Newton's method, the true inertia left in.
 nodes     weights, numbering, masses and ghost penalty of one step, at the positions of its start
+lasting   the same in the total frame: weights and gradients of the reference shape, once for the run
 trial     increment, strains, gradients in the moved shape
 spans     F-bar: changes of volume averaged over knot spans, where a body asks for it
 assemble  potential, residual and tangent of the particles in one and two directions
@@ -14,5 +15,5 @@ extrapolate  a step and two halves of it make one of order 2
 drive     heat and mechanics step by step, in steps chosen by their error; what fails is cut and tried again
 Used only where `method.mechanics` says so: nothing of it is compiled otherwise.
 
-May use   mpm.state, mpm.basis, mpm.boundary, mpm.materials, mpm.heat, mpm.contact, mpm.integrate; SciPy's LAPACK     May not  see configs or records
+May use   mpm.state, mpm.basis, mpm.boundary, mpm.materials, mpm.heat, mpm.contact, mpm.integrate, mpm.total; SciPy's LAPACK     May not  see configs or records
 """

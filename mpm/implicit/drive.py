@@ -20,13 +20,13 @@ import numpy as np
 from mpm.boundary import directions
 from mpm.implicit.contact import STIFFNESS, keep_books, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
-from mpm.implicit.extrapolate import extrapolate
+from mpm.implicit.extrapolate import everything, extrapolate
+from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
 from mpm.implicit.newton import Problem, solve
-from mpm.implicit.nodes import new_nodes
+from mpm.implicit.nodes import Nodes, new_nodes
 from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
-from mpm.memory import arrays, fill
 from mpm.outcome import BUDGET, COMPLETED, INVERTED, NO_EQUILIBRIUM, Outcome, outcome
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
@@ -48,6 +48,7 @@ class Implicit:
     size: float
     first: float  # step to begin with [s]
     walls: np.ndarray  # (3, 2) kinds
+    lasting: Nodes | None = None  # of the reference shape, in the total frame
 
     def begin(self) -> dict:
         """What a run counts, and what its next step is to be: steps made again for their error (rejected) or cut (failed), sums, extrema."""
@@ -140,14 +141,15 @@ def too_far(scene, told: dict, error: float) -> bool:
 def keep(scene, clock) -> tuple:
     """All that a step may change."""
     met = copy.deepcopy(scene.meeting.memory()) if scene.meeting is not None else None
-    return {path: array.copy() for path, array in arrays(scene.bodies).items()}, copy.deepcopy(vars(clock)), met
+    return {path: array.copy() for path, array in everything(scene).items()}, copy.deepcopy(vars(clock)), met
 
 
 def put_back(scene, clock, before: tuple) -> dict:
     """The state before a step; what Newton's method was asked stays counted."""
-    bodies, past, met = before
+    found, past, met = before
     counts = {name: clock.told[name] for name in ("iterations", "shifts")}
-    fill(scene.bodies, bodies)
+    for path, array in everything(scene).items():
+        array[...] = found[path]
     clock.recall(past)
     clock.told |= counts
     if met is not None:
@@ -159,8 +161,12 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     """One step of dt; particles move only where it is ok."""
     how, told, body = scene.implicit, clock.told, scene.bodies[0]
     lam, mu = stiffest(body)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, how.walls, scene.gravity[-1], mu)
-    pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
+    if scene.references:
+        how.lasting = how.lasting or lasting_nodes(scene.space, body, scene.references[0])
+        nodes, pull, drag = begin_step(scene.space, scene.references[0], how.lasting, scene.gravity[-1], dt)
+    else:
+        nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, how.walls, scene.gravity[-1], mu)
+        pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
@@ -176,6 +182,8 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     if report[CODE] != 0:
         report[STEP] = 0
         return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
+    if scene.references:
+        end_step(scene.space, body, scene.references[0], nodes, answer.u, dt)
     clock.gather(dt)
     if scene.course is not None:
         clock.worked += scene.course.work(scene)

@@ -7,6 +7,7 @@ Fails when   what is extrapolated is inverted: its error is infinite, and the st
 
 import numpy as np
 
+from mpm.implicit.lasting import recover
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.jit import kernel
 from mpm.materials import enthalpy, temperature_of
@@ -14,6 +15,7 @@ from mpm.memory import arrays
 from mpm.state import Setting, Softening
 
 CARRIED = ("x", "v", "C", "B", "J", "c", "F", "X", "k", "most")
+ON_NODES = ("u", "v", "plastic", "T")  # in the total frame
 SUMS = ("exchanged", "local", "dissipated", "repaired", "unrepaired", "worked", "swelled", "softened")
 BOOKS = ("pushed", "turned", "spread", "worked", "rubbed")  # of what walls and tools do (mpm.contact.step.Touching)
 STILL = 1e-3  # K: a span of temperatures below which nothing is warmer than anything
@@ -44,9 +46,14 @@ def upright(body) -> bool:
     return bool(min(map(np.min, (body.particles.J, b1, b2, b3, plane, whole))) > 0)
 
 
+def everything(scene) -> dict[str, np.ndarray]:
+    """Every array that a step may change: of bodies, and of their nodes in the total frame."""
+    return arrays(scene.bodies) | arrays(scene.references, "nodes")
+
+
 def extrapolate(scene, clock, work, once: tuple, start: tuple) -> float:
     """The state after two half steps becomes that of order 2, with `once` after one whole step and `start` before both; returns the error of the step."""
-    (first, past, met), (before, *_), body, now = once, start, scene.bodies[0], arrays(scene.bodies)
+    (first, past, met), (before, *_), body, now = once, start, scene.bodies[0], everything(scene)
     theta, bounds, gap = now.get("0.thermal.theta"), None, now["0.particles.x"] - first["0.particles.x"]
     error = float(np.sqrt(np.mean(np.sum(gap * gap, axis=1)))) / scene.implicit.size
     if theta is not None:
@@ -60,10 +67,12 @@ def extrapolate(scene, clock, work, once: tuple, start: tuple) -> float:
         array = getattr(scene.meeting.touching, name)
         array += array - met[name]
     for path, array in now.items():
-        if path.rpartition(".")[2] in CARRIED:
+        if path.rpartition(".")[2] in (ON_NODES if path.startswith("nodes") else CARRIED):
             array += array - first[path]
             if path.endswith(".most"):
                 np.clip(array, before[path], latched(body.expansion).set, out=array)
+    if scene.references:
+        recover(scene.space, body, scene.references[0], scene.implicit.lasting)
     if isinstance(body.setting, Setting):
         np.clip(body.setting.X, before["0.setting.X"], 1.0, out=body.setting.X)
     if bounds is not None and scene.repair:

@@ -108,26 +108,58 @@ def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) ->
     n = shape[0] * shape[1] * shape[2]
     sums = np.zeros((n, 2 + 2 * D))
     lay(space, gradient, particles, walls, gravity, flat, flip, w, g, sums)
-    active = np.flatnonzero(sums[:, 0] > 0)
-    places = np.stack(np.unravel_index(active, shape), axis=1)
-    if D == 2 and np.ptp(places[:, 0]) < np.ptp(places[:, 1]):  # the shorter direction varies fastest: a narrow band
+    active, places = in_order(space, np.flatnonzero(sums[:, 0] > 0))
+    held = np.zeros((len(active), D), bool)
+    for axis, side in np.argwhere(walls[:D] < CONTACT):
+        held[on_wall(space, places, axis, side)] |= True if walls[axis, side] == STICK else np.arange(D) == axis
+    m = sums[active, 0]
+    carried = m, np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None]), sums[active, 2 + D :].copy()
+    ghosts = ghosts_of(space, walls, places, sums[active, 1], mu)
+    return arrange(space, places, held, (flat, flip, w, g), carried, ghosts, new_spans(locking, space, particles, M))
+
+
+def in_order(space, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(numbers (A,), places (A, 3)) of nodes on the grid, the shorter direction fastest: a narrow band."""
+    places = np.stack(np.unravel_index(active, extents(space)), axis=1)
+    if directions(space) == 2 and np.ptp(places[:, 0]) < np.ptp(places[:, 1]):
         order = np.lexsort(places.T)
         active, places = active[order], places[order]
-    number = np.full(n, -1)
-    number[active] = np.arange(len(active))
-    held, double, thin = np.zeros((len(active), D), bool), np.ones(len(active)), np.ones((len(active), D))
+    return active, places
+
+
+def on_wall(space, places: np.ndarray, axis: int, side: int) -> np.ndarray:
+    """Which nodes stand on a wall (A,)."""
+    return places[:, axis] == (PAD if side == 0 else extents(space)[axis] - 1 - PAD)
+
+
+def arrange(space, places, held, laid: tuple, carried: tuple, ghosts: tuple, spans) -> Nodes:
+    """Nodes from what was laid on the grid (numbers, flips, weights, gradients), what they carry (mass, velocity, force) and the ghost penalty's lines."""
+    (flat, flip, w, g), (lines, stiff), D = laid, ghosts, directions(space)
+    node, eq = numbers(space, places)[flat], np.where(held, -1, np.cumsum(~held).reshape(held.shape) - 1).astype(np.int64)
+    far = eq[lines].reshape(len(lines), 4 * D)
+    spread = far.max(axis=1) - np.where(far < 0, eq.size, far).min(axis=1) if len(lines) else np.zeros(1, np.int64)
+    band = int(max(breadth(eq, node), spread.max(), 0)) if D < 3 else 0
+    return Nodes(node, flip, w, g, *carried, eq, lines, stiff, spans, places, band, int((~held).sum()))
+
+
+def numbers(space, places: np.ndarray) -> np.ndarray:
+    """Of every node of the grid, its number among those at `places`; -1 where it is none of them."""
+    number = np.full(math.prod(extents(space)), -1)
+    number[np.ravel_multi_index(tuple(places.T), extents(space))] = np.arange(len(places))
+    return number
+
+
+def ghosts_of(space, walls, places, volume: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
+    """(lines (L, 4), stiffness (L,) [N/m]) of the ghost penalty; volume (A,): what the nodes hold of the body."""
+    D, shape, count = directions(space), extents(space), len(places)
+    double, thin, number = np.ones(count), np.ones((count, D)), numbers(space, places)
     for axis, side in np.argwhere(walls[:D] < CONTACT):
-        on = places[:, axis] == (PAD if side == 0 else shape[axis] - 1 - PAD)
-        held[on] |= True if walls[axis, side] == STICK else np.arange(D) == axis
+        on = on_wall(space, places, axis, side)
         double[on] *= 2.0
         if not (axis == 0 and isinstance(space, Axisymmetric)):  # where `radius` knows how thin it is; a line on a mirror stands for half a cell elsewhere
             thin[np.ix_(on, np.arange(D) != axis)] *= 0.5
-    eq = np.where(held, -1, np.cumsum(~held).reshape(held.shape) - 1).astype(np.int64)
-    node = number[flat]
-    radius = np.ones(len(active))
-    if isinstance(space, Axisymmetric):
-        radius = np.maximum(places[:, 0] - PAD, ON_AXIS) * space.h
-    fill = double * sums[active, 1] / (radius * space.h**D)
+    radius = np.maximum(places[:, 0] - PAD, ON_AXIS) * space.h if isinstance(space, Axisymmetric) else np.ones(count)
+    fill, active = double * volume / (radius * space.h**D), np.ravel_multi_index(tuple(places.T), shape)
     lines, stiff = [np.zeros((0, 4), np.int64)], [np.zeros(0)]
     for axis in range(D):
         stride = math.prod(shape[axis + 1 :])
@@ -136,15 +168,7 @@ def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) ->
         row = row[fill[row].min(axis=1) < FILLED]
         lines.append(row)
         stiff.append(GAMMA * mu * radius[row].mean(axis=1) * thin[row, axis].min(axis=1) * space.h ** (D - 2))
-    lines, stiff = np.concatenate(lines), np.concatenate(stiff)
-    far = eq[lines].reshape(len(lines), 4 * D)
-    spread = far.max(axis=1) - np.where(far < 0, eq.size, far).min(axis=1) if len(lines) else np.zeros(1, np.int64)
-    m = sums[active, 0]
-    v = np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None])
-    push = sums[active, 2 + D :].copy()
-    spans = new_spans(locking, space, particles, M)
-    band = int(max(breadth(eq, node), spread.max(), 0)) if D < 3 else 0
-    return Nodes(node, flip, w, g, m, v, push, eq, lines, stiff, spans, places, band, int((~held).sum()))
+    return np.concatenate(lines), np.concatenate(stiff)
 
 
 @kernel

@@ -78,19 +78,26 @@ def nodes_of_volume(space, x, p, walls, at, w, g, d):
 
 
 @kernel
-def add(rows, number, shape, width, at, t, scale):
-    """rows += scale t t^T of the nodes `at`."""
+def name(number, shape, width, at, each, place):
+    """Of the nodes `at`: rows, -1 where there is none, and what places are differences of."""
     D, M = at.shape
     for a in range(M):
-        row = number[flat(shape, at, a)]
+        each[a], place[a] = number[flat(shape, at, a)], at[0, a]
+        for k in range(1, D):
+            place[a] = place[a] * width + at[k, a]
+
+
+@kernel
+def add(rows, each, place, t, scale):
+    """rows += scale t t^T."""
+    M = len(each)
+    for a in range(M):
+        row = each[a]
         if row < 0 or t[a] == 0.0:
             continue
         for b in range(M):
-            if number[flat(shape, at, b)] >= row:
-                place = 0
-                for k in range(D):
-                    place = place * width + at[k, b] - at[k, a]
-                rows[row, place] += scale * t[a] * t[b]
+            if each[b] >= row:
+                rows[row, place[b] - place[a]] += scale * t[a] * t[b]
 
 
 @kernel(inline=True)
@@ -117,18 +124,21 @@ def matrix(space, shape, x, flow, pieces, met, capacity, each, dt, walls):
     for k in range(len(each)):
         rows[k, 0] = capacity[each[k]]
     at, w, g, d, t = np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros((D, M)), np.zeros(M)
+    own, place = np.empty(M, np.int64), np.empty(M, np.int64)
     for p in range(x.shape[0]):
         nodes_of(space, x, p, walls, at, w, g, d)
+        name(number, shape, width, at, own, place)
         for k in range(D):
-            add(rows, number, shape, width, at, g[k], dt * flow[p])
+            add(rows, own, place, g[k], dt * flow[p])
     owner, area, offset = pieces
     for s in range(len(owner)):
         nodes_of(space, x, owner[s], walls, at, w, g, d)
+        name(number, shape, width, at, own, place)
         for a in range(M):
             t[a] = w[a]
             for k in range(D):
                 t[a] += g[k, a] * offset[k, s]
-        add(rows, number, shape, width, at, t, dt * area[s] * met[0, s])
+        add(rows, own, place, t, dt * area[s] * met[0, s])
     steps = np.zeros((size, D), np.int64)
     for o in range(size):
         rest = o

@@ -221,7 +221,7 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat=heat_method(experiment),
         scale=scale,
         turns=(*moments(experiment), *(changes.turns if changes is not None else ()), *kinks(experiment, met)),
-        implicit=implicit(experiment, space, bodies, met, times),
+        implicit=implicit(experiment, space, bodies, references, met, times),
         watch=watch(experiment, exact),
     )
 

@@ -16,7 +16,7 @@ def kinks(experiment, met) -> tuple[float, ...]:
     return tuple(sorted({float(when) for one in met.drive.told for when in (*one.times, *one.turning, *one.there) if 0 < when < experiment.time.end}))
 
 
-def implicit(experiment, space, bodies, met, times):
+def implicit(experiment, space, bodies, references, met, times):
     """The Implicit of a scene; None where its mechanics is explicit, and then nothing of it is loaded."""
     if experiment.method.mechanics != "implicit":
         return None
@@ -27,4 +27,4 @@ def implicit(experiment, space, bodies, met, times):
     if first == "auto":
         pace = limits(space, directions(space), bodies, np.zeros((len(bodies), REPORT))).pace
         first = float(min(FIRST * times[-1], times[1], pace))
-    return Implicit(experiment.method.mechanics_tolerance, size, first, met.walls[0])
+    return Implicit(experiment.method.mechanics_tolerance, size, first, references[0].walls if references else met.walls[0])

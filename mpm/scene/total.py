@@ -108,8 +108,8 @@ def reference_of(experiment, name: str, space, body, surface, lower, upper) -> R
     plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
     courant = courant_of(space, X.astype(float), particles.V0.astype(float), walls, *stiffest(body))
     m, sign, lean, less = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign, lean, less))
-    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, wall, lean, near, less, held, np.zeros(1), ramp,
-                     drag, courant, warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
+    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, wall, lean, near, less, held, walls, np.zeros(1),
+                     ramp, drag, courant, warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
 
 
 def folded(nodes: np.ndarray, ghost, image, sign, wall, lean) -> np.ndarray:

@@ -52,6 +52,7 @@ class Reference(NamedTuple):
     near: np.ndarray  # (W,) nodes that gravity pulls less than their mass, as ghosts are folded on to them,
     less: np.ndarray  # (W, D) by this part of it
     held: np.ndarray  # (H, 2) (node, direction) that a wall holds
+    walls: np.ndarray  # (3, 2) kinds of the walls that the body lies on; CONTACT where it lies on none
     t: np.ndarray  # (1,) time [s]
     ramp: Any  # mpm.state.Ramp or Within, of load and drag
     drag: float  # rate of the drag [1/s]

@@ -30,7 +30,7 @@ OTHER = {"shape": {"box": {"lower": [1.6], "upper": [1.8]}}, "material": "m"}
     ({"walls.left": "contact"}, "updated", "no contact"),
     ({"bodies.other": OTHER}, "updated", "one body only"),
     ({"method.transfer": "flip"}, "updated", "transfers nothing"),
-    ({"method.mechanics": "implicit"}, "updated", "implicit mechanics"),
+    ({"method.mechanics": "implicit"}, "total", "nothing in the config"),
     ({"grid.basis": "linear"}, "updated", "hat functions"),
 ])  # fmt: skip
 def test_which_frame_and_why(changes, frame, why):
