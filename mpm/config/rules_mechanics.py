@@ -23,7 +23,7 @@ def named(experiment: Any, which: str) -> Any:
 def hindered(experiment: Any) -> str:
     """Why implicit mechanics cannot take an experiment, or is not what is wanted of it; empty where it can."""
     one = named(experiment, "implicit")
-    found = [*mechanics(one), *(wrong for name, item in one.tools.items() for wrong in mechanics_tool(one, name, item))]
+    found = [*mechanics(one)]
     found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
     found += [wrong for index, load in enumerate(one.loads) for wrong in mechanics_load(one, index, load)]
     if found:
@@ -63,13 +63,6 @@ def mechanics_load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     if asked(experiment) and known(lambda: item.traction is not None and item.traction.nominal is None):
         said = "implicit mechanics knows tractions by reference area only"
         yield Finding(("loads", index, "traction"), said, ["nominal", EXPLICIT], on_key=True)
-
-
-def mechanics_tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
-    """Of a tool."""
-    if asked(experiment) and known(lambda: item.motion is not None and item.motion.force is not None):
-        said = "implicit mechanics moves tools as they are told: one that a force moves is not known to it yet"
-        yield Finding(("tools", name, "motion", "force"), said, ["velocity", "path", EXPLICIT], on_key=True)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:

@@ -43,7 +43,7 @@ class Drive:
         """The fastest that any place on a tool may go from `start` on for `span`, forces acting for `pushed` [m/s]."""
         return max(self.fastest(t, start, span, pushed) for t in range(len(self.told)))
 
-    def fastest(self, t: int, start: float, span: float, pushed: float) -> float:
+    def fastest(self, t: int, start: float, span: float, pushed: float = 0.0) -> float:
         """Of tool t."""
         one, rate = self.told[t], float(np.linalg.norm(self.tools.v[t])) + pushed * float(np.linalg.norm(self.tools.force[t])) * self.tools.light[t]
         if len(one.times) > 1:

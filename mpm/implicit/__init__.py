@@ -9,6 +9,7 @@ assemble  potential, residual and tangent of the particles in one and two direct
 volume    the same in three
 matrix    a band and its Cholesky factor, or blocks and conjugate gradients
 contact   the same of pieces of surface at contact walls and tools, with friction
+free      tools that a force moves: one more unknown each
 newton    the minimisation: line search, shifts
 deliver   what particles keep of the nodes' answer
 extrapolate  a step and two halves of it make one of order 2

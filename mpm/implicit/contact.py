@@ -34,7 +34,9 @@ class Pushed(NamedTuple):
     arm: np.ndarray  # (P, D) from the particle to the piece [m]
     against: np.ndarray  # (P,) see mpm.contact.found
     normal: np.ndarray  # (P, D) out of the obstacle
-    given: np.ndarray  # (P, D) by how much the obstacle moves there [m]
+    told: np.ndarray  # (P, D) by how much the obstacle moves there as it is told [m]
+    given: np.ndarray  # (P, D) by how much it moves: told, and what forces move a free tool (mpm.implicit.free)
+    free: np.ndarray  # (P,) number of a tool that a force moves; -1
     gap: np.ndarray  # (P,) at the start [m]
     stiff: np.ndarray  # (P,) k S [N/m]
     area: np.ndarray  # (P,) S
@@ -46,7 +48,7 @@ class Pushed(NamedTuple):
 def nothing(D: int) -> Pushed:
     """No pairs."""
     none, whole, ways = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, D))
-    return Pushed(whole, whole, ways, whole, ways, ways, none, none, none, none, none, ways)
+    return Pushed(whole, whole, ways, whole, ways, ways, ways.copy(), whole, none, none, none, none, none, ways)
 
 
 def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
@@ -57,7 +59,7 @@ def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
     touching = met.touching
     if met.drive is not None:
         met.drive.lay(clock.time, dt, 1)
-        place_tools(touching.tools, 0, dt, dt)
+        place_tools(touching.tools, 0, dt, 0.0)
     skin = new_skin(D, touching.first)
     lay_skins(scene.space, scene.bodies, skin)
     found, count = find_all(scene.space, scene.for_motion, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
@@ -68,8 +70,9 @@ def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
     stretch = stretch - np.sum(stretch * normal, axis=1)[:, None] * normal
     fast = np.isinf(mu)
     limit = np.where(fast, np.where(gap < TOUCHES * scene.space.h, np.inf, 0.0), np.where(fast, 0.0, mu) * stiff * np.maximum(-gap, 0.0))
-    return Pushed(piece, skin.owner[piece], skin.x[piece] - skin.home[piece], against, normal, dt * found.given[s], gap, stiff, skin.area[piece], mu,
-                  limit, stretch)  # fmt: skip
+    told = dt * found.given[s]
+    return Pushed(piece, skin.owner[piece], skin.x[piece] - skin.home[piece], against, normal, told, told.copy(), found.free[s], gap, stiff,
+                  skin.area[piece], mu, limit, stretch)  # fmt: skip
 
 
 @kernel(inline=True)
@@ -97,6 +100,14 @@ def pressed(pushed, s, move, way):
     return pushed.gap[s] + along, np.sqrt(square)
 
 
+@kernel(inline=True)
+def springs(pushed, s, gap, size):
+    """(stiffness of the gap, of the spring along the surface, whether that slides) of piece s."""
+    full, limit = pushed.stiff[s], pushed.limit[s]
+    slides = full * size > limit
+    return full if gap < 0.0 else 0.0, 0.0 if limit == 0.0 else limit / size if slides else full, slides
+
+
 @kernel
 def push_back(nodes, pushed, u, r, matrix, want, depth):
     """The obstacles' part of the potential; of residual and matrix where wanted. depth (P,) is how deep each piece is in its obstacle [m]."""
@@ -107,8 +118,7 @@ def push_back(nodes, pushed, u, r, matrix, want, depth):
         gap, size = pressed(pushed, s, move, way)
         depth[s] = max(-gap, 0.0)
         full, limit = pushed.stiff[s], pushed.limit[s]
-        stiff, slides = (full if gap < 0.0 else 0.0), full * size > limit
-        hold = 0.0 if limit == 0.0 else limit / size if slides else full
+        stiff, hold, slides = springs(pushed, s, gap, size)
         total += 0.5 * stiff * gap * gap
         if limit > 0.0:
             total += limit * (size - 0.5 * limit / full) if slides else 0.5 * full * size * size

@@ -21,6 +21,7 @@ from mpm.boundary import directions
 from mpm.implicit.contact import STIFFNESS, keep_books, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
 from mpm.implicit.extrapolate import everything, extrapolate
+from mpm.implicit.free import free_tools, move_on
 from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
 from mpm.implicit.newton import Problem, solve
 from mpm.implicit.nodes import Nodes, new_nodes
@@ -96,8 +97,8 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
 
 
 def fastest(scene, clock, span: float) -> float:
-    """The fastest that a tool may go for `span` from now on [m/s]."""
-    return scene.meeting.pace(clock.time, span) if scene.meeting is not None else 0.0
+    """The fastest that a tool may go for `span` from now on [m/s]; how far a force moves one is for the step to find (mpm.implicit.free)."""
+    return scene.meeting.stride(clock.time, span, 0.0) if scene.meeting is not None else 0.0
 
 
 def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
@@ -170,9 +171,10 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
-    answer = solve(Problem(scene.space, body, nodes, pushed, dt, drag), dt * nodes.v)
+    free = free_tools(scene, dt)
+    answer = solve(Problem(scene.space, body, nodes, pushed, free, dt, drag), dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
-    if answer.u is None:
+    if answer.u is None or not move_on(scene, free, dt):
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
     work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2))
     clock.reset()

@@ -7,6 +7,7 @@ Fails when   what is extrapolated is inverted: its error is infinite, and the st
 
 import numpy as np
 
+from mpm.contact.tools import Tools
 from mpm.implicit.lasting import recover
 from mpm.integrate.bounds import bounds_of, keep_between
 from mpm.jit import kernel
@@ -66,6 +67,10 @@ def extrapolate(scene, clock, work, once: tuple, start: tuple) -> float:
     for name in BOOKS if met is not None else ():
         array = getattr(scene.meeting.touching, name)
         array += array - met[name]
+    if met is not None and isinstance(tools := scene.meeting.touching.tools, Tools):
+        free = tools.light > 0
+        for name, array in scene.meeting.free().items():
+            array[free] += array[free] - met[name][free]
     for path, array in now.items():
         if path.rpartition(".")[2] in (ON_NODES if path.startswith("nodes") else CARRIED):
             array += array - first[path]

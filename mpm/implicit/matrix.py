@@ -96,22 +96,23 @@ def add_diagonal(matrix, nodes, value: np.ndarray) -> None:
 
 
 def inverted(matrix, nodes, r: np.ndarray, shift: float) -> np.ndarray | None:
-    """-K^-1 r (A, D), with `shift` of its diagonal added to K, which is spent; None where it is not positive."""
+    """-K^-1 r (R, A, D) of R right sides, with `shift` of its diagonal added to K, which is spent; None where it is not positive."""
     step = np.zeros(r.shape)
     if isinstance(matrix, Blocks):
         own = matrix.values[:, matrix.slot[(FAR * WIDE + FAR) * WIDE + FAR]]
         matrix.shift[:] = shift * np.abs(own[:, np.arange(3), np.arange(3)])
-        done = conjugate(matrix, -r * matrix.free, inverse(own, matrix), step)
-        return step if done >= 0 and np.isfinite(step).all() else None
+        blocks = inverse(own, matrix)
+        done = [conjugate(matrix, -right * matrix.free, blocks, out) for right, out in zip(r, step, strict=True)]
+        return step if min(done) >= 0 and np.isfinite(step).all() else None
     free, band = nodes.eq >= 0, matrix.values
     band[:, 0] += shift * np.abs(band[:, 0])
     factor, info = dpbtrf(band.T, lower=1, overwrite_ab=1)
     if info != 0:
         return None
-    right = np.empty(nodes.unknowns)
-    right[nodes.eq[free]] = -r[free]
+    right = np.empty((nodes.unknowns, len(r)), order="F")
+    right[nodes.eq[free]] = -r[:, free].T
     found, _ = dpbtrs(factor, right, lower=1)
-    step[free] = found[nodes.eq[free]]
+    step[:, free] = found[nodes.eq[free]].T
     return step if np.isfinite(found).all() else None
 
 

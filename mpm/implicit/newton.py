@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm.implicit.assemble import assemble
 from mpm.implicit.contact import CLOSER, push_back
+from mpm.implicit.free import Free, couple, settle
 from mpm.implicit.matrix import Band, add_diagonal, inverted, new_matrix
 from mpm.implicit.nodes import third_differences
 from mpm.implicit.volume import assemble_volume
@@ -39,6 +40,7 @@ class Problem:
     body: object
     nodes: object
     pushed: object
+    free: Free
     dt: float
     drag: float
 
@@ -54,6 +56,8 @@ class Problem:
         if not math.isfinite(total):
             return math.inf
         total += third_differences(nodes, u, r, matrix, want)
+        if len(self.free.d):
+            total += settle(nodes, self.pushed, self.free, u, dt)
         total += push_back(nodes, self.pushed, u, r, matrix, want, depth)
         late, inert, slow = u - dt * nodes.v, nodes.m[:, None] / (dt * dt), self.drag * nodes.m[:, None] / dt
         total += float(0.5 * np.sum(inert * late * late) + 0.5 * np.sum(slow * u * u) - np.sum(nodes.push * u))
@@ -127,7 +131,15 @@ def newton_step(problem: Problem, u, r, matrix, depth) -> tuple[np.ndarray | Non
     for tried in range(SHIFTS):
         if tried:
             problem.potential(u, r, matrix, depth, True)
-        step = inverted(matrix, problem.nodes, r, FIRST_SHIFT * 10.0 ** (tried - 1) if tried else 0.0)
-        if step is not None:
-            return step, tried
+        shift, Q = FIRST_SHIFT * 10.0 ** (tried - 1) if tried else 0.0, len(problem.free.d)
+        c, k = np.empty((Q, *u.shape)), np.empty(Q)
+        if Q:
+            couple(problem.nodes, problem.pushed, problem.free, u, problem.dt, c, k)
+        found = inverted(matrix, problem.nodes, np.concatenate([r[None], c]), shift)
+        if found is None:
+            continue
+        step, rest = found[0], np.diag(k) + np.einsum("qnc,pnc->qp", c, found[1:])  # k - c K^-1 c
+        if Q and np.linalg.eigvalsh(rest)[0] <= 0.0:
+            continue
+        return step - np.einsum("q,qnc->nc", np.linalg.solve(rest, np.einsum("qnc,nc->q", c, step)), found[1:]) if Q else step, tried
     return None, SHIFTS

@@ -25,6 +25,16 @@ def test_a_column_that_sags():
     assert cuts == 4 and not wrong
 
 
+@pytest.mark.plain
+@pytest.mark.parametrize(
+    "changes",
+    [{"method.frame": "total"}, {"tools": {"plate": {"shape": {"box": {"lower": [1.02], "upper": [1.4]}}, "motion": {"force": [-2e3], "mass": 100}}}}],
+)
+def test_a_column_on_its_own_nodes_or_under_a_weight(changes):
+    cuts, wrong = cut(mpm.load(COLUMN, changes | {"time": {"end": 0.5, "step": 0.05}, "output.every": 0.125}), 4, np.random.default_rng(5))
+    assert cuts == 4 and not wrong
+
+
 @pytest.mark.slow
 def test_a_loaf():
     cuts, wrong = cut(mpm.load(LOAF, {"grid.cell": "4 mm", "time.end": 60}), 4, np.random.default_rng(5))

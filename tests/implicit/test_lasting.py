@@ -4,27 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_column import column, top_and_middle
-from test_order import COLUMN
 
 import mpm
 from mpm.benchmarks.implicit import stack
 from mpm.runner import run_point
 
+COLUMN = Path(__file__).parents[2] / "configs" / "studies" / "viscous_column.yaml"
 VERIFICATION = Path(__file__).parents[2] / "configs" / "verification"
 REST = {"time.end": "1e5", "output.every": "1e5", "method.mechanics": "implicit", "method.frame": "total"}
-
-
-@pytest.mark.parametrize("steps", [1, 10])
-def test_a_column_in_one_step_or_ten(steps):
-    """The closed form with 4 to 32 cells: 3.2e-5, 4.4e-6, 5.8e-7, 7.3e-8, order 3, in ten steps as in one."""
-    errors = []
-    for n in (4, 8, 16, 32):
-        run = run_point(column(n, method={"mechanics": "implicit", "frame": "total"}, time={"end": 1e5, "step": 1e5 / steps}))
-        assert run.outcome.ok and run.facts["failed"] == 0
-        errors.append(abs(run.finals["position_mean_x"] - top_and_middle()))
-    assert errors[0] < 5e-5 and errors[-1] < 1e-7, errors
-    assert (np.log2(np.array(errors[:-1]) / errors[1:]) > 2.8).all(), errors
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import pytest
 
 import mpm
 from mpm.implicit.contact import STIFFNESS, may_touch
+from mpm.implicit.free import Free, couple
 from mpm.implicit.matrix import Band, new_matrix, product
 from mpm.implicit.newton import Problem
 from mpm.implicit.nodes import new_nodes
@@ -28,10 +29,13 @@ def problem(disc, dimension, locking, seed=3):
     pushed = pushed._replace(gap=pushed.gap - 0.05e-3)  # some in the wall
     pushed.limit[pushed.gap < 0] = np.resize([np.inf, 1e-3, 5e-5, 0.0], (pushed.gap < 0).sum())  # some hold, some slide
     pushed.stretch[:, 0] = rng.normal(scale=1e-6, size=len(pushed.gap))
-    pushed.given[:, 1] = 1e-6
+    pushed.told[:, 1] = pushed.given[:, 1] = 1e-6
+    pushed.free[::2] = 0
+    way = np.array([[0.28, 0.96, 0.0][: nodes.v.shape[1]]])
+    free = Free(np.array([0]), way / np.linalg.norm(way), *np.array([[2.0], [1e-4], [1e-5], [0.0]]))
     assert len(nodes.lines) and np.unique(pushed.limit).size == 4
     u = rng.normal(scale=2e-5, size=nodes.v.shape) * (nodes.eq >= 0)
-    return Problem(scene.space, body, nodes, pushed, 0.4, 3.0), u
+    return Problem(scene.space, body, nodes, pushed, free, 0.4, 3.0), u
 
 
 def dense(matrix, eq):
@@ -49,6 +53,16 @@ def dense(matrix, eq):
         product(matrix, one, out)
         whole[eq[eq >= 0], j] = out[eq >= 0]
     return whole
+
+
+def bordered(found, u):
+    """What a free tool takes off the matrix: c c^T/k."""
+    c, k, eq = np.zeros((1, *u.shape)), np.zeros(1), found.nodes.eq
+    couple(found.nodes, found.pushed, found.free, u, found.dt, c, k)
+    column = np.zeros(found.nodes.unknowns)
+    column[eq[eq >= 0]] = c[0][eq >= 0]
+    assert np.abs(column).max() > 0 and abs(found.free.d[0]) > 1e-6
+    return np.outer(column, column) / k[0]
 
 
 FBAR = {"fbar": {"own": 0.1}}
@@ -71,7 +85,7 @@ def test_gradient_and_hessian(disc, dimension, locking):
         return Pi, gradient, matrix
 
     _, r, matrix = at(np.zeros(n))
-    whole = dense(matrix, eq)
+    whole = dense(matrix, eq) - bordered(found, u)
     rng = np.random.default_rng(11)
     step = 1e-9
     for _ in range(8):
