@@ -76,16 +76,17 @@ def end_step(space, body, reference, nodes: Nodes, u: np.ndarray, dt: float) -> 
     reference.v[at, :D] = u / dt
     reference.t[0] += dt
     if len(reference.plastic):
-        F, extra = moved(space, reference), extra_of(space, body, reference, nodes.spans)
-        back, scale = np.linalg.inv(F), np.exp(-2.0 * extra)[:, None, None]
+        back, extra = np.linalg.inv(np.eye(3) + moved(space, reference)), extra_of(space, body, reference, nodes.spans)
+        scale = np.exp(-2.0 * extra)[:, None, None]
         b = np.eye(3) + tensors(body.particles.B)
         reference.plastic[:] = entries(scale * (back @ b @ back.transpose(0, 2, 1)) - np.eye(3), reference.plastic.shape[1])
 
 
 def recover(space, body, reference, nodes: Nodes) -> None:
     """Particles as the displacement of the nodes and what flow has left say."""
-    particles, H = body.particles, moved(space, reference) - np.eye(3)
-    J, F = np.linalg.det(np.eye(3) + H), np.eye(3) + H
+    particles, H = body.particles, moved(space, reference)
+    F = np.eye(3) + H
+    J = np.linalg.det(F)
     particles.x[:] = reference.X + displacement_at(space, reference, reference.X)
     particles.J[:] = J
     if J.min() <= 0:
@@ -100,19 +101,19 @@ def recover(space, body, reference, nodes: Nodes) -> None:
 
 
 def moved(space, reference) -> np.ndarray:
-    """F (N, 3, 3) of the particles."""
-    (H, hoop), D = gradients_at(space, reference, reference.X), directions(space)
-    F = np.tile(np.eye(3), (len(H), 1, 1))
-    F[:, :D, :D] += H
-    F[:, 2, 2] += hoop
-    return F
+    """F - 1 (N, 3, 3) of the particles."""
+    (plane, hoop), D = gradients_at(space, reference, reference.X), directions(space)
+    H = np.zeros((len(plane), 3, 3))
+    H[:, :D, :D] = plane
+    H[:, 2, 2] += hoop
+    return H
 
 
 def extra_of(space, body, reference, spans) -> np.ndarray:
     """What F-bar adds to each logarithmic strain (N,); 0 where nothing is averaged."""
     if not isinstance(spans, Spans):
         return np.zeros(len(reference.X))
-    grown, V0 = np.log(np.linalg.det(moved(space, reference))), body.particles.V0
+    grown, V0 = np.log(np.linalg.det(np.eye(3) + moved(space, reference))), body.particles.V0
     return (1.0 - spans.own) * ((np.bincount(spans.of, V0 * grown) / spans.volume)[spans.of] - grown) / 3.0
 
 
