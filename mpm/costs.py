@@ -11,7 +11,7 @@ import math
 from mpm.config.rules_frame import named
 from mpm.config.rules_size import MOST_STEPS, MOST_UNKNOWNS
 from mpm.records.frames import SPILL
-from mpm.scene.inventory import output_bytes, physics, ticks
+from mpm.scene.inventory import layers, output_bytes, physics, swollen, ticks
 from mpm.scene.refusal import SceneError, placed
 
 # Fitted to the table of `python -m mpm.benchmarks.costs`, with LEAST the left ends of docs/chart_robin_slab.png and docs/chart_hencky_bar.png
@@ -153,7 +153,7 @@ def counted(experiment) -> tuple[int, int]:
     if not experiment.moving:
         return 0, 0
     edge, particles, nodes = experiment.grid.cell / experiment.method.particles, 0.0, 0.0
-    for body in experiment.bodies.values():
+    for name, body in experiment.bodies.items():
         outline = shape(body.shape, experiment.grid.dimension).moved(np.array(experiment.method.offset) * experiment.grid.cell)
         lower, upper = outline.bounds()
         first, last = np.floor(np.maximum(lower, 0.0) / edge + 1e-9), np.ceil(upper / edge - 1e-9)  # as in mpm.scene.build.sample
@@ -161,7 +161,7 @@ def counted(experiment) -> tuple[int, int]:
         some = np.minimum(sides, round(LATTICE ** (1 / len(sides)))).astype(int)
         places = np.meshgrid(*(low + np.floor((np.arange(n) + 0.5) * side / n) + 0.5 for low, side, n in zip(first, sides, some, strict=True)), indexing="ij")
         inside = outline.distance(edge * np.stack([axis.ravel() for axis in places], axis=1)) < edge / 2
-        particles += float(np.mean(inside)) * math.prod(sides.tolist())
+        particles += float(np.mean(inside)) * math.prod(sides.tolist()) * swollen(experiment, name)
         nodes += 2 * math.prod((sides / experiment.method.particles + 3).tolist())
     return round(particles), round(min(nodes, math.prod(math.ceil(size / experiment.grid.cell) + 5 for size in experiment.grid.size)))
 
@@ -193,8 +193,7 @@ def meeting(experiment, scene, particles: int, steps: int, sound: float) -> floa
     settles = any(part.flow is not None for part in parts) or any(load.drag is not None for load in experiment.loads)
     if not (share := near_share(scene, experiment.time.end / experiment.time.scale, sound, settles)):
         return 0.0
-    sampled = sum(len(body.particles.m) for body in scene.bodies)
-    pieces = int(scene.meeting.touching.first[-1]) * (particles / sampled) ** (1 - 1 / experiment.grid.directions)
+    pieces = int(scene.meeting.touching.first[-1]) * (particles / sum(len(body.particles.m) for body in scene.wholes)) ** (1 - 1 / experiment.grid.directions)
     return share * (steps + 2 * outputs(experiment)) * (ALONE["near"] + pieces * MET[experiment.grid.dimension])
 
 
@@ -212,7 +211,7 @@ def estimate_moving(experiment) -> dict:
     particles = count_particles(experiment)
     scene = build(experiment, most=math.inf if particles <= LOOKED else LOOKED)
     now = present_limits(scene, Clock(scene))
-    particles = sum(len(body.particles.m) for body in scene.bodies) if particles <= LOOKED else int(float(f"{particles:.3g}"))
+    particles = sum(len(body.particles.m) for body in scene.wholes) if particles <= LOOKED else int(float(f"{particles:.3g}"))
     S = experiment.time.scale
     step = (scene.step or now.step() * scene.safety) * S
     refuse_endless(experiment, step)
@@ -242,6 +241,7 @@ def by_mechanics(experiment, found: dict) -> dict:
 
     end, step, tolerance = experiment.time.end, experiment.time.step, experiment.method.mechanics_tolerance
     steps = max(outputs(experiment) - 1, math.ceil(IMPLICIT_STEPS * (1e-4 / tolerance) ** 0.5)) if step == "auto" else math.ceil(end / step)
+    steps += layers(experiment)
     seconds = LEAST["moving"] + found["particles"] * steps * IMPLICIT[experiment.grid.directions] + outputs(experiment) * ALONE["output"]
     cost, why = f"explicit {found['seconds']:.2g} s in {found['steps']} steps, implicit {seconds:.2g} s in about {steps}", ""
     if experiment.method.mechanics == "auto":

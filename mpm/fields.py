@@ -48,9 +48,10 @@ def particle_fields(scene, origins) -> dict[str, np.ndarray]:
         if name == "body":
             fields[name] = np.concatenate([np.full(len(body.particles.m), k, np.int32) for k, body in enumerate(scene.bodies)])
         elif name == "id":
-            fields[name] = np.arange(sum(len(body.particles.m) for body in scene.bodies), dtype=np.int32)
+            firsts = np.cumsum([0, *map(len, origins)])  # counted with what is still to come, so each keeps its number
+            fields[name] = np.concatenate([np.arange(k, k + len(body.particles.m), dtype=np.int32) for k, body in zip(firsts, scene.bodies, strict=False)])
         else:
-            fields[name] = np.concatenate([np.array(made[name](body, X)) for body, X in zip(scene.bodies, origins, strict=True)])
+            fields[name] = np.concatenate([np.array(made[name](body, X[: len(body.particles.m)])) for body, X in zip(scene.bodies, origins, strict=True)])
     return fields
 
 

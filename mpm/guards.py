@@ -22,6 +22,7 @@ import numpy as np
 from mpm.boundary import extents
 from mpm.diagnostics import strains
 from mpm.integrate.fragments import STRETCH, torn
+from mpm.integrate.nozzle import Nozzle
 from mpm.integrate.state_check import span, unsound
 from mpm.integrate.surroundings import Surroundings
 from mpm.materials import Hencky
@@ -42,7 +43,7 @@ class Guards:
 
     def __init__(self, scene):
         over = ROUNDING if scene.repair else SLOPES if scene.blend == 1.0 and not scene.sharp else NOISE
-        self.data = [Data(body, around, over) for body, around in zip(scene.bodies, scene.surroundings, strict=True)]
+        self.data = [Data(body, around, over) for body, around in zip(scene.wholes, scene.surroundings, strict=True)]
         self.judged = (
             all(isinstance(body.source, NoSource) and isinstance(body.expansion, NoExpansion) and isinstance(body.elastic, Hencky) for body in scene.bodies)
             and not any(len(reference.load) for reference in scene.references)
@@ -162,7 +163,7 @@ class Data:
         if isinstance(body.thermal, Isothermal):
             return
         theta = body.thermal.theta
-        self.heats = not (all(isinstance(one, NoSource | Load) for one in acting(body.source)) and isinstance(body.heating, NoHeating))
+        self.heats = not (all(isinstance(one, NoSource | Load | Nozzle) for one in acting(body.source)) and isinstance(body.heating, NoHeating))
         self.cools = self.warms = False  # by a flux, which knows no bound that way
         self.low, self.high = float(np.min(theta)), float(np.max(theta))
 

@@ -78,21 +78,27 @@ class Recorder:
 
     def __init__(self, scene, frames: Frames | None = None):
         self.scene = scene
-        self.warm = [body for body in scene.bodies if isinstance(body.thermal, Thermal)]
-        self.start = {id(body): body.thermal.theta.astype(float) for body in self.warm}
-        self.capacity = np.concatenate([capacities(body) for body in self.warm]) if self.warm else None  # (N,) at the start [J/K]
-        self.capacities = {b: capacities(scene.bodies[b]) for _, b in scene.watch.of.values() if isinstance(scene.bodies[b].thermal, Thermal)}
+        warm = {b: body for b, body in enumerate(scene.wholes) if isinstance(body.thermal, Thermal)}
+        self.start = {b: body.thermal.theta.astype(float) for b, body in warm.items()}
+        if scene.inflow is not None:
+            scene.inflow.refer(self.start)
+        self.capacities = {b: capacities(body) for b, body in warm.items()}  # (N,) at the start [J/K]
         self.times: list[float] = []
         self.shot = math.nan  # when the last snapshot was taken, on the run's clock
         self.series: dict[str, list[float]] = {}
         self.frames = Frames() if frames is None else frames
-        places = [body.particles.x for body in scene.bodies] if not scene.references else [reference.X for reference in scene.references]
+        places = [body.particles.x for body in scene.wholes] if not scene.references else [reference.X for reference in scene.references]
         self.begun = [x.astype(float) for x in places] if scene.watch.particles else []  # where particles were at the start
         self.places = {name: self.place(scene, name) for name in scene.watch.probes}
         self.errors = scene.watch.exact if isinstance(scene.watch.exact, Errors) else None
-        self.origin = [body.particles.x.astype(float) for body in self.warm] if scene.watch.exact is not None and self.errors is None else []
+        self.origin = [body.particles.x.astype(float) for body in warm.values()] if scene.watch.exact is not None and self.errors is None else []
         self.crossed = {name: math.nan for name, _, _ in scene.watch.thresholds}
         self.seen = {probe: (0.0, self.probe(probe)) for _, probe, _ in scene.watch.thresholds}
+
+    @property
+    def warm(self) -> list:
+        """(number, body) of those that have heat."""
+        return [(b, self.scene.bodies[b]) for b in self.start]
 
     @staticmethod
     def place(scene, name: str):
@@ -189,7 +195,9 @@ class Recorder:
         rubbed = scene.meeting.friction if scene.meeting is not None else 0.0
         if scene.meeting is not None:
             yield "dissipation_friction", rubbed
-        self.gone = work + clock.swelled + clock.softened - clock.dissipated - rubbed - (total - self.series.get("energy_total", [total])[0])
+        yield from scene.inflow.series() if scene.inflow is not None else ()
+        given = getattr(scene.inflow, "energy", 0.0) + work + clock.swelled + clock.softened
+        self.gone = given - clock.dissipated - rubbed - (total - self.series.get("energy_total", [total])[0])
         yield "dissipation_transfer", self.gone
 
     def thermal(self, scene, clock):
@@ -197,28 +205,29 @@ class Recorder:
         if not self.warm:
             yield "energy_ledger", -self.gone
             return
-        theta = np.concatenate([body.thermal.zero + body.thermal.theta.astype(float) for body in self.warm])
-        total = sum(heat_since(body, self.start[id(body)]) for body in self.warm)
-        yield "temperature_mean", np.sum(self.capacity * theta) / np.sum(self.capacity)
+        theta = np.concatenate([body.thermal.zero + body.thermal.theta.astype(float) for _, body in self.warm])
+        capacity = np.concatenate([self.capacities[b][: len(body.thermal.theta)] for b, body in self.warm])
+        total = sum(heat_since(body, self.start[b][: len(body.thermal.theta)]) for b, body in self.warm)
+        yield "temperature_mean", np.sum(capacity * theta) / np.sum(capacity)
         yield "temperature_min", np.min(theta)
         yield "temperature_max", np.max(theta)
         yield "heat_total", total
         yield from self.setting()
         yield "area_exchanging", self.exchanging()
         yield "heat_exchanged", clock.exchanged
-        yield "heat_ledger", total - clock.exchanged - clock.local
-        yield "energy_ledger", total - clock.exchanged - clock.local - self.gone
+        made = total - clock.exchanged - clock.local - getattr(scene.inflow, "heat", 0.0)
+        yield from (("heat_ledger", made), ("energy_ledger", made - self.gone))
         for name in self.places:
             yield f"temperature_{name}", self.probe(name)
         if self.origin:
-            V = np.concatenate([body.particles.V0 * body.particles.J for body in self.warm])
+            V = np.concatenate([body.particles.V0 * body.particles.J for _, body in self.warm])
             error = theta - scene.watch.exact(np.concatenate(self.origin), clock.time)
             yield "error_l2", math.sqrt(np.sum(V * error**2) / np.sum(V))
             yield "error_max", np.max(np.abs(error))
 
     def setting(self):
         """Degrees of setting."""
-        if found := [(body.setting.X, body.particles.m) for body in self.warm if isinstance(body.setting, Setting)]:
+        if found := [(body.setting.X, body.particles.m) for _, body in self.warm if isinstance(body.setting, Setting)]:
             X, m = (np.concatenate(part) for part in zip(*found, strict=True))
             yield "setting_mean", np.sum(m * X) / np.sum(m)
             yield "setting_min", np.min(X)
@@ -230,9 +239,9 @@ class Recorder:
             body = scene.bodies[b]
             told[b] = dict(motion_of(scene.space, (body,), scene.outlines[b : b + 1]))
             if isinstance(body.thermal, Thermal):
-                theta, capacity = body.thermal.zero + body.thermal.theta.astype(float), self.capacities[b]
+                theta, capacity = body.thermal.zero + body.thermal.theta.astype(float), self.capacities[b][: len(body.thermal.theta)]
                 told[b] |= {"temperature_mean": np.sum(capacity * theta) / np.sum(capacity), "temperature_min": np.min(theta)}
-                told[b] |= {"temperature_max": np.max(theta), "heat_total": heat_since(body, self.start[id(body)])}
+                told[b] |= {"temperature_max": np.max(theta), "heat_total": heat_since(body, self.start[b][: len(theta)])}
         for name, (base, b) in scene.watch.of.items():
             yield name, told[b][base]
 
@@ -256,7 +265,7 @@ class Recorder:
     def exchanging(self) -> float:
         """Area that exchanges heat."""
         skins = [reference.warmth.now for reference in self.scene.references if isinstance(reference.warmth, Warmth)]
-        return float(sum(map(np.sum, skins))) if self.scene.references else sum(exchanging_area(body) for body in self.warm)
+        return float(sum(map(np.sum, skins))) if self.scene.references else sum(exchanging_area(body) for _, body in self.warm)
 
     def run(self, scene, clock, result: Outcome, wall_time: float) -> Run:
         """The Run. Where it did not complete, the series stop at the last good record."""

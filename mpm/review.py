@@ -74,7 +74,8 @@ def extents(experiment: Any, run: Run) -> dict[str, np.ndarray]:
 def volume(experiment: Any, run: Run) -> Iterator[str]:
     if "volume_total" not in run.series:
         return
-    ratio, (least, most) = float(run.series["volume_total"][-1] / run.series["volume_total"][0]), explained(experiment, run)
+    begun = run.series["volume_total"][0] + run.series.get("volume_inflow", np.zeros(1))[-1]
+    ratio, (least, most) = float(run.series["volume_total"][-1] / begun), explained(experiment, run)
     moving = any(getattr(tool.motion, key) is not None for tool in experiment.tools.values() for key in ("velocity", "path", "force"))
     pressed = moving or any(load.traction is not None for load in experiment.loads)
     for share, word in ((0.0 if pressed else 1 - ratio / least, "lost"), (ratio / most - 1, "gained")):

@@ -68,6 +68,7 @@ class Scene:
     facts: dict = field(default_factory=dict)
     sharp: int = 0  # XPIC order of the temperature transfer; 0: none
     repair: bool = False  # whether temperatures are kept between their bounds (integrate/bounds.py)
+    inflow: Any = None  # mpm.inflow.Inflow: bodies that come in, or None
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
     threads: int = 1  # that share the work of a large scene
     moderate: float = math.inf  # the largest strain in the total frame, beyond which a run ends as outgrown (mpm.guards)
@@ -82,6 +83,13 @@ class Scene:
         self.order = Order(self.space, self.bodies)
         self.order.due = not self.references  # those have their order for good
         self.for_motion, self.for_heat = as_moved(self.bodies), tuple(map(as_heated, self.bodies))
+        if self.inflow is not None:
+            self.inflow.begin(self)
+
+    @property
+    def wholes(self) -> tuple:
+        """The bodies with all that will ever come in."""
+        return self.bodies if self.inflow is None else self.inflow.wholes(self)
 
 
 class Clock:
@@ -134,6 +142,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         clock.recall(before["clock"])
         recorder.recall(before["recorder"])
         guards.recall(before["guards"])
+        if scene.inflow is not None:
+            scene.inflow.recall(scene, before["inflow"])
         scene.order.recall(before["order"])
         fill(scene.bodies, before["bodies"])
         fill(scene.references, before["references"])
@@ -149,7 +159,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         if keeper is not None and keeper.due(stop):
             parts = {"recorder": recorder.memory(), "guards": guards.memory(), "order": scene.order.memory()}
             parts |= {"bodies": arrays(scene.bodies), "references": arrays(scene.references)}
-            parts |= {"meeting": scene.meeting.memory()} if scene.meeting is not None else {}
+            parts |= {name: one.memory() for name in ("meeting", "inflow") if (one := getattr(scene, name)) is not None}
             keeper.save({"clock": vars(clock) | {"spent": clock.spent + time.perf_counter() - began}, **parts})
         return stop
 
@@ -186,6 +196,8 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: fl
     while clock.part < clock.parts:
         until = clock.start + (end - clock.start) * (clock.part + 1) / clock.parts
         begun = clock.start + (end - clock.start) * clock.part / clock.parts
+        if scene.inflow is not None:
+            scene.inflow.enter(scene, begun)
         later = scene.meeting is not None and scene.meeting.warms  # heat that passes by touch follows the motion that says who touched
         if not (cut or later):
             result = warm_bodies(scene, clock, work, begun, until - begun, now)
@@ -208,6 +220,10 @@ def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: fl
 def march(scene: Scene, clock: Clock, guards: Guards, work, until: float, look) -> Outcome:
     """Mechanical steps up to `until`, in blocks."""
     while until - clock.time > 1e-12 * until:
+        goal = until
+        if scene.inflow is not None:
+            scene.inflow.enter(scene, clock.time)
+            goal = scene.inflow.before(clock.time, until)
         if not (sound := guards.block(scene, clock)).ok:
             return sound
         now = present_limits(scene, clock)
@@ -215,7 +231,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, work, until: float, look) 
         clock.first_step = clock.first_step or step
         if step < clock.first_step / UNDERFLOW:
             return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
-        left = until - clock.time
+        left = goal - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
         dt, block = left / count, clear(scene, clock, left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count))
         cut = count == 1 and left < step * (1 - 1e-9)
@@ -235,7 +251,7 @@ def march(scene: Scene, clock: Clock, guards: Guards, work, until: float, look) 
             detail = f"of {scene.names[failed]}" if len(scene.names) > 1 else ""
             return outcome(max(NON_FINITE, int(report[CODE])), scene.order.name(failed, int(report[PARTICLE])), clock.time * scene.scale, clock.steps, detail)
         clock.steps += block
-        clock.time = until if block == count else clock.time + dt * block
+        clock.time = goal if block == count else clock.time + dt * block
         if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
     return outcome(COMPLETED)

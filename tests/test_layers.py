@@ -20,7 +20,7 @@ LAYERS = {
     "lanes": 0, "isotropic": 0, "memory": 0, "tensors": 0, "outcome": 0, "state": 0, "warned": 0,
     "basis": 1, "materials": 1, "transfer": 1, "boundary": 1, "heat": 1, "sources": 1,
     "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
-    "error": 2, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "warming": 3, "rigid": 3, "point": 3,
+    "error": 2, "inflow": 3, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "warming": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4, "starting": 4,
     "reference": 5, "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6, "fit": 6, "sensitivity": 6, "opened": 6,

@@ -154,6 +154,7 @@ ELSEWHERE = {
     "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
     *(f"{way}_by_law({law})" for way in ("explicit", "stabilised", "implicit") for law in ("Table", "Logistic")),  # tests/integrate/test_implicit_heat.py
     "explicit_by_law(Constant)",  # the same
+    "act(Nozzle)", "unstretch(NoExchange)", "unstretch(Surface)",  # tests/integrate/test_nozzle.py
     "averages(Average)", "average(Average)", "relax(Average)",  # tests/integrate/test_fbar.py
     "grown(Line)", "grown(Plane)", "grown(Axisymmetric)", "grown(Volume)",  # the same
     *(f"{role}(Setting)" for role in ("condition", "conditions_eight", "set_one", "record_setting", "pick")), "set_one(NoSetting)",  # test_setting.py

@@ -17,6 +17,7 @@ Further files
     fit               what is fitted
     formula           A formula of one variable x, for lines of theory
     headers           the header of such a file
+    inflow            a body that comes in through a nozzle
     loading           what is prescribed to a material point
     loads             forces on the surface of a body that moves, and a drag that brings it to rest
     measured          measured curves
@@ -28,6 +29,7 @@ Further files
     rules_fit         rules for named parameters and for what is fitted
     rules_forces      rules for gravity and loads
     rules_frame       rules of `method.frame`
+    rules_inflow      rules of `inflow`
     rules_mechanics   rules of `method.mechanics`
     rules_output      rules for the output
     rules_point       rules for grid.dimension 0, the material point

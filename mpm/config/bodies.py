@@ -6,6 +6,7 @@ from pydantic import model_validator
 from pydantic_core import core_schema
 
 from mpm.config.base import Kind, Model, doc, one_of, problem
+from mpm.config.inflow import Inflow
 from mpm.config.loading import Strains
 from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, PerLength, Quantity, Temperature, Velocity
 
@@ -129,3 +130,4 @@ class Body(Model):
     angular_velocity: Annotated[float | tuple[AngularVelocity, ...], Spin()] | None = doc(
         None, description="rotation about the body's centre of mass at the start: a number in two dimensions, three in 3-D"
     )
+    inflow: Inflow | None = doc(None, description="the body comes in through a nozzle, whose inside is its shape; it is there from the start unless given")

@@ -11,6 +11,7 @@ from mpm.config import rules_chart as charting
 from mpm.config import rules_fit as fitting
 from mpm.config import rules_forces as forces
 from mpm.config import rules_frame as framing
+from mpm.config import rules_inflow as pouring
 from mpm.config import rules_mechanics as steps
 from mpm.config import rules_output as output
 from mpm.config import rules_point as point
@@ -79,6 +80,8 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (scene.body, each("bodies")),
     (scene.body_shape, each("bodies")),
     (scene.body_motion, each("bodies")),
+    (pouring.inflow, each("bodies")),
+    (pouring.methods, once),
     (scene.material, each("materials")),
     (setting.setting, each("materials")),
     (scene.anything, once),

@@ -32,7 +32,9 @@ def hindered(experiment: Any) -> str:
     found += [wrong for name, material in one.materials.items() for wrong in frame_material(one, name, material)]
     if found:
         return found[0].message
-    return "the total frame knows no tools yet" if one.tools else ""
+    if one.tools:
+        return "the total frame knows no tools yet"
+    return "what flows in is known in the updated frame only" if any(body.inflow is not None for body in one.bodies.values()) else ""
 
 
 def frame(experiment: Any) -> Iterator[Finding]:

@@ -154,6 +154,8 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
     elif one is not None and one[1] not in experiment.bodies:
         known_ones = list(experiment.bodies)
         yield Finding(path, f"there is no body {one[1]!r}", known_ones, near(one[1], known_ones), given=name)
+    elif name.endswith(".inflow") and not any(body.inflow is not None for body in experiment.bodies.values()):
+        yield Finding(path, "no body flows in", "an inflow of a body", given=name)
     elif one is not None and experiment.grid.dimension == 0:
         yield Finding(path, "a material point is the only body", name.rpartition(".")[0], given=name)
     elif one is not None and one[0].startswith(("temperature", "heat")) and experiment.materials[experiment.bodies[one[1]].material].heat is None:

@@ -73,6 +73,8 @@ def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
     kick, before, clock.lag = clock.lag + 0.5 * dt, clock.lag, 0.5 * dt
     if scene.course is not None:
         scene.course.lay(scene, clock.time, dt, steps, before / kick)
+    if scene.inflow is not None:
+        scene.inflow.lay(clock.time, dt * steps)
     astray = push(scene, clock, work, float(dt), float(kick), steps, float(dt), clock.reports)
     if scene.course is not None:
         clock.worked += scene.course.work(scene)

@@ -27,8 +27,8 @@ class Skin(NamedTuple):
 @kernel
 def new_skin(D, first):
     """Room for the pieces of bodies that begin at `first`."""
-    P = first[-1]
-    skin = Skin(np.empty((P, D)), np.zeros((P, D)), np.empty(P), np.empty((P, D)), np.empty(P, np.int64), np.empty(P, np.int64), first)
+    P = first[-1]  # pieces that are still to come stay shut
+    skin = Skin(np.zeros((P, D)), np.zeros((P, D)), np.zeros(P), np.zeros((P, D)), np.zeros(P, np.int64), np.empty(P, np.int64), first)
     for b in range(len(first) - 1):
         skin.body[first[b] : first[b + 1]] = b
     return skin

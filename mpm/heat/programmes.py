@@ -2,15 +2,16 @@
 
 at(programme, t)      value; at a jump that after it        during(programme, t)   what holds from t on to the next jump: without jumps
 bounds(programme) -> (lowest, highest)                      longest(programme)     no step may be longer and still see it [s]
-before(programme, t)                   what holds up to t
+before(programme, t)                   what holds up to t                          integral(programme, begin, end)   over time, exact
 turns(programme) -> times of its jumps [s]                  spell(programme, begin, end)   the same within [begin, end), nothing outside
 """
 
 import math
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from mpm.materials.laws import Table
-from mpm.materials.roles import value
+from mpm.materials.roles import enthalpy, value
 
 SAME = 1e-9  # of a time: what is nearer to a jump is at it
 
@@ -40,6 +41,19 @@ def at(programme, t: float) -> float:
     if isinstance(programme, Parts):
         return at(during(programme, t), t)
     return programme
+
+
+def integral(programme, begin: float, end: float) -> float:
+    """Over time from begin to end."""
+    if isinstance(programme, Table):
+        return float(enthalpy(programme, end) - enthalpy(programme, begin))
+    if isinstance(programme, Sine):
+        rate, swing = 2 * math.pi / programme.period, [math.cos(2 * math.pi * t / programme.period + programme.phase) for t in (begin, end)]
+        return programme.mean * (end - begin) + programme.amplitude * (swing[0] - swing[1]) / rate
+    if isinstance(programme, Parts):
+        ends = [begin, *(min(max(jump, begin), end) for jump in programme.jumps), end]
+        return sum(integral(part, *span) for part, span in zip(programme.parts, pairwise(ends), strict=True))
+    return programme * (end - begin)
 
 
 def during(programme, t: float):

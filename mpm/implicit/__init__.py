@@ -11,6 +11,7 @@ matrix    a band and its Cholesky factor, or blocks and conjugate gradients
 contact   the same of pieces of surface at contact walls and tools, with friction
 free      tools that a force moves: one more unknown each
 newton    the minimisation: line search, shifts
+nozzle    nodes and particles that a nozzle moves
 deliver   what particles keep of the nodes' answer
 extrapolate  a step and two halves of it make one of order 2
 drive     heat and mechanics step by step, in steps chosen by their error; what fails is cut and tried again

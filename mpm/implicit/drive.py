@@ -25,6 +25,7 @@ from mpm.implicit.free import free_tools, move_on
 from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
 from mpm.implicit.newton import Problem, solve
 from mpm.implicit.nodes import Nodes, new_nodes
+from mpm.implicit.nozzle import carry, told_work
 from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
@@ -68,9 +69,13 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
     """Steps up to `until`. warm(scene, clock, work, begun, dt, limits) is the run's heat step; look() -> bool asks whether to stop."""
     clock.told = clock.told or scene.implicit.begin()
     while until - clock.time > 1e-12 * until:
+        goal = until
+        if scene.inflow is not None:
+            scene.inflow.enter(scene, clock.time)
+            goal = scene.inflow.before(clock.time, until)
         if not (sound := guards.block(scene, clock)).ok:
             return sound
-        told, left = clock.told, until - clock.time
+        told, left = clock.told, goal - clock.time
         count = max(1, math.ceil(left / told["next"] * (1 - 1e-9)), math.ceil(left * fastest(scene, clock, left) / (STRIDE * scene.space.h)))
         dt, before = left / count, keep(scene, clock)
         error, found = pair(scene, clock, work, dt, warm)
@@ -88,7 +93,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         binding = "time.step" if scene.step else "error of the step"
         clock.bound[binding] = clock.bound.get(binding, 0) + 1
         clock.steps += 1
-        clock.time = until if count == 1 else before[1]["time"] + dt
+        clock.time = goal if count == 1 else before[1]["time"] + dt
         recorder.watch(scene, clock.time)
         if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
@@ -120,6 +125,8 @@ def one_step(scene, clock, work, dt: float, warm) -> Outcome:
     """Heat, then mechanics; the other way round where heat passes by touch, as motion says who touches."""
     if scene.course is not None:
         scene.course.lay(scene, clock.time, dt, 1, 0.0)
+    if scene.inflow is not None:
+        scene.inflow.lay(clock.time, dt)
     later = scene.meeting is not None and scene.meeting.warms
     now = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     found = outcome(COMPLETED) if later else warm(scene, clock, work, clock.time, dt, now)
@@ -166,17 +173,18 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         how.lasting = how.lasting or lasting_nodes(scene.space, body, scene.references[0])
         nodes, pull, drag = begin_step(scene.space, scene.references[0], how.lasting, scene.gravity[-1], dt)
     else:
-        nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, how.walls, scene.gravity[-1], mu)
+        nodes = new_nodes(scene.space, scene.gradient, body, how.walls, scene.gravity[-1], mu)
         pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
     free = free_tools(scene, dt)
-    answer = solve(Problem(scene.space, body, nodes, pushed, free, dt, drag), dt * nodes.v)
+    problem = Problem(scene.space, body, nodes, pushed, free, dt, drag)
+    answer = solve(problem, dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
     if answer.u is None or not move_on(scene, free, dt):
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
-    work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2))
+    work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2)) + told_work(problem, answer.u)
     clock.reset()
     report = clock.reports[0]
     told["work"] += abs(keep_books(scene, nodes, pushed, answer.u, answer.depth, dt))
@@ -186,6 +194,7 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
     if scene.references:
         end_step(scene.space, body, scene.references[0], nodes, answer.u, dt)
+    carry(body, dt)
     clock.gather(dt)
     if scene.course is not None:
         clock.worked += scene.course.work(scene)

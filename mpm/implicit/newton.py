@@ -98,7 +98,7 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
     u, shifts = guess.copy(), 0
     Pi = problem.potential(u, r, matrix, depth, True)
     if not math.isfinite(Pi) and u.any():
-        u[:] = 0.0
+        u[free] = 0.0
         Pi = problem.potential(u, r, matrix, depth, True)
     if not math.isfinite(Pi):
         return Answer(None, 0, 0, depth)

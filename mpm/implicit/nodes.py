@@ -14,7 +14,9 @@ import numpy as np
 from mpm.basis import stencil
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.implicit.matrix import add
+from mpm.implicit.nozzle import told_nodes
 from mpm.implicit.spans import new_spans
+from mpm.integrate.nozzle import Nozzle
 from mpm.jit import kernel
 from mpm.state import PAD, Axisymmetric
 from mpm.transfer import uses_basis_gradient
@@ -100,8 +102,9 @@ def breadth(eq, node):
     return most
 
 
-def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) -> Nodes:
+def new_nodes(space, gradient, body, walls, gravity, mu: float) -> Nodes:
     """The nodes of a step from the particles' positions; mu [Pa] scales the ghost penalty."""
+    particles = body.particles
     D, shape, N = directions(space), extents(space), len(particles.m)
     M = len(stencil(space.basis, 0.0)[1]) ** D
     flat, flip, w, g = np.empty((N, M), np.int64), np.empty((N, M), np.int8), np.empty((N, M)), np.empty((N, M, D))
@@ -113,9 +116,13 @@ def new_nodes(space, gradient, particles, locking, walls, gravity, mu: float) ->
     for axis, side in np.argwhere(walls[:D] < CONTACT):
         held[on_wall(space, places, axis, side)] |= True if walls[axis, side] == STICK else np.arange(D) == axis
     m = sums[active, 0]
-    carried = m, np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None]), sums[active, 2 + D :].copy()
+    v = np.where(held, 0.0, sums[active, 2 : 2 + D] / m[:, None])
+    if isinstance(body.source, Nozzle):
+        told = told_nodes(body.source, particles, flat, w, sums[:, 0])[active]
+        held[told], v[told] = True, body.source.speed[0] * body.source.way
+    carried = m, v, sums[active, 2 + D :].copy()
     ghosts = ghosts_of(space, walls, places, sums[active, 1], mu)
-    return arrange(space, places, held, (flat, flip, w, g), carried, ghosts, new_spans(locking, space, particles, M))
+    return arrange(space, places, held, (flat, flip, w, g), carried, ghosts, new_spans(body.locking, space, particles, M))
 
 
 def in_order(space, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

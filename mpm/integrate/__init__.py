@@ -20,6 +20,7 @@ Further files
     given_source         the body force and the heat that a config gives
     fragments            gaps in a body
     grid_heating         elastic heating as the source document has it
+    nozzle               what of a body is still in its nozzle
     sorting              particles in the order of the nodes that they touch, where that pays
     state_check          what a block of steps begins from, looked at as its opening reads it
     step_parts           what a mechanical step works with: the method, the nodes, and where in a block of steps it is

@@ -17,8 +17,8 @@ from mpm.boundary.walls import empty, fold, impose, unfold
 from mpm.integrate.active_nodes import reaches, touch
 from mpm.integrate.dither import dither
 from mpm.integrate.fbar import average_all, relax
-from mpm.integrate.given_source import act
 from mpm.integrate.grid_heating import compress_all
+from mpm.integrate.nozzle import act
 from mpm.integrate.particle_update import respond
 from mpm.integrate.state_check import sound
 from mpm.integrate.step_parts import Moment, scratch

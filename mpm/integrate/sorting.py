@@ -126,6 +126,13 @@ class Order:
         self.axis, self.astray = 0, True  # across which; whether particles are not in their slabs
         self.reach = np.zeros((0, 2), np.int64)  # (M, 2) nodes that each slab touched last along the axis
 
+    def grow(self, bodies) -> None:
+        """Bodies with more particles, behind those that they had (mpm.inflow)."""
+        for b, (old, new) in enumerate(zip(self.bodies, bodies, strict=True)):
+            if self.original[b] is not None:
+                self.original[b] = np.concatenate([self.original[b], np.arange(len(old.particles.m), len(new.particles.m))])
+        self.bodies, self.due, self.astray = bodies, True, True
+
     def memory(self) -> dict:
         """Enough to go on from here with the arrays of the bodies as they are (mpm.memory)."""
         return {name: value for name, value in vars(self).items() if name not in ("space", "bodies")}

@@ -106,7 +106,7 @@ def strongest(surface, thermal) -> float:
     if isinstance(surface.radiation, Radiation):
         hottest = np.maximum(surface.radiation.sky + np.maximum(surface.radiation.drift, 0.0), thermal.zero + float(np.max(thermal.theta)))
         beta = beta + 4 * STEFAN_BOLTZMANN * surface.radiation.emissivity * hottest**3
-    return float(beta.max())
+    return float(beta.max(initial=0.0))
 
 
 def coupling(body, lam, mu, R0) -> float:

@@ -29,6 +29,7 @@ PER = {
     2: (("J/m", "W/m", "N/m", "N", "kg/m", "kg/s", "m2", "m"), "per metre of depth"),
 }
 EXACT_FIELDS = (("displacement", "m"), ("velocity", "m/s"), ("stress", "Pa"))
+INFLOW = (("mass", "kg"), ("volume", "m3"), ("heat", "J"), ("energy", "J"))
 RELATIVE = {"frequency": "frequency", "damping": "damping rate", "tip": "deflection of the tip", "force": "force at the end"}
 
 
@@ -69,7 +70,8 @@ TABLE = [
     ("dissipation.total", "", "J", SERIES, "work dissipated by flow since the start"),
     ("dissipation.friction", "", "J", SERIES, "work that friction between surfaces has taken since the start; it warms nothing"),
     ("dissipation.transfer", "", "J", SERIES, "energy of motion that no law of the config took: lost in transfers, at walls and by the time step"),
-    ("work.loads", "", "J", SERIES, "work of loads, tools and gravity that changes over time on the bodies since the start"),
+    ("work.loads", "", "J", SERIES, "work of loads, tools, nozzles and gravity that changes over time on the bodies since the start"),
+    *((f"{name}.inflow", "", units, SERIES, f"{name} of what flowed in since the start, as it enters its nozzle") for name, units in INFLOW),
     ("velocity.max", "v", "m/s", SERIES, "largest speed of a particle"),
     ("volume.total", "V", "m3", SERIES, "total volume"),
     ("area.exchanging", "S", "m2", SERIES, "area of the surface that exchanges heat"),
@@ -160,12 +162,11 @@ TABLE = [
 ]
 
 AT_A_POINT = ("stress.", "strain.", "kirchhoff.")
-NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "dissipation.friction", "work.loads",
-                  "velocity.max", "strain.max", "pressure.mean", "mass.total", "volume.total", "area.exchanging")  # fmt: skip
+NOT_AT_A_POINT = ("energy.kinetic", "energy.total", "energy.ledger", "dissipation.transfer", "dissipation.friction", "work.loads", "velocity.max", "strain.max",
+                  "pressure.mean", "mass.total", "volume.total", "area.exchanging", *(f"{name}.inflow" for name, _ in INFLOW))  # fmt: skip
 FIELDS_GRID = ("temperature", "velocity", "density", "stress")
 FIELDS_PARTICLES = ("position", "velocity", "temperature", "pressure", "J", "stress_mises", "mass", "body",
-                    "stress", "stress_recovered", "strain", "displacement", "reference_position", "velocity_gradient", "id",
-                    "setting")  # fmt: skip
+                    "stress", "stress_recovered", "strain", "displacement", "reference_position", "velocity_gradient", "id", "setting")  # fmt: skip
 TENSORS = ("stress", "stress_recovered", "strain", "velocity_gradient")  # fields of particles with a column a component
 OBSERVABLES = tuple(row[0] for row in TABLE if "." in row[0])
 

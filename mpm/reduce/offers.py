@@ -103,6 +103,8 @@ def refused(experiment: Any, want: Asked) -> str:
         return "a material point is the smallest model there is"
     if any(single(name) is not None for name in experiment.output.observables):
         return "observables of one body are asked for, under names that a smaller model has not"
+    if any(body.inflow is not None for body in experiment.bodies.values()):
+        return "a body flows in, which no smaller model knows"
     if experiment.sources:
         return "sources act within the bodies, which no estimate of a smaller model knows"
     return "fields are asked for" if want.fields else ""

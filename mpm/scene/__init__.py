@@ -15,6 +15,7 @@ Further files
     framing            which frame `method.frame: auto` takes, and why
     groups             the dimensionless groups of a scene
     implicit           how a scene that asks for implicit mechanics begins
+    inflow             inflow of a config
     inventory          what a config holds, from the config alone
     law                laws of materials
     meeting            which bodies of a config can meet which walls and each other, and the pieces of surface that they meet by

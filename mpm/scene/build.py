@@ -19,6 +19,8 @@ from mpm.scene.course import course
 from mpm.scene.exchange import pieces_of
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit, kinks
+from mpm.scene.inflow import by_owner, inflow, nozzle, sample_column, warmth
+from mpm.scene.inflow import moments as openings
 from mpm.scene.inventory import ticks
 from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.meeting import cornered, meeting, plan_meetings
@@ -97,8 +99,9 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut, edges, outline = sample(experiment, name, most)
+    cut, edges, outline = (sample if config.inflow is None else sample_column)(experiment, name, most)
     faces, cut = cut, cornered(cut, experiment.grid.cell) if meets else cut
+    cut = cut if config.inflow is None else by_owner(cut)
     dtype = np.dtype(experiment.method.precision)
     N, D = cut.centroid.shape
     x = cut.centroid
@@ -115,7 +118,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
     elastic, flow = mechanical_laws(material)
     seams, thermal, surface, expansion, heating, surroundings = None, Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
     if material.heat is not None:
-        theta = np.full(N, config.temperature - zero, dtype)
+        theta = (np.full(N, config.temperature - zero) if config.inflow is None else warmth(experiment, name, x) - zero).astype(dtype)
         thermal = Thermal(theta, np.zeros((N, D), dtype), zero, law(material.heat.kappa), law(material.heat.alpha))
         surface, surroundings, seams = surface_and_seams(experiment, name, cut, edges, zero, SIDES[experiment.grid.dimension], thermal, meets)
     elif meets:
@@ -128,6 +131,9 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, most: fl
         on_grid = material.heating.elastic is not None and material.heating.elastic.form == "grid"
         heating = GridHeating(gamma, fraction, *np.zeros((2, math.prod(extents(space))))) if on_grid else Heating(gamma, fraction)
     source = sourced(experiment, name, loaded(experiment, name, faces, space, gradient_operator(experiment)), particles, thermal)
+    if config.inflow is not None:
+        source = nozzle(experiment, name, x)
+        particles.v[:] = source.speed[0] * source.way
     setting = setting_law(material, np.full(N, config.temperature))
     body = Body(particles, thermal, surface, elastic, flow, expansion, heating, source, setting=setting)
     return body, surroundings, seams, outline
@@ -220,7 +226,8 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         heat_step=None if experiment.method.heat_step == "auto" else experiment.method.heat_step,
         heat=heat_method(experiment),
         scale=scale,
-        turns=(*moments(experiment), *(changes.turns if changes is not None else ()), *kinks(experiment, met)),
+        inflow=inflow(experiment, bodies),
+        turns=(*moments(experiment), *openings(experiment), *(changes.turns if changes is not None else ()), *kinks(experiment, met)),
         implicit=implicit(experiment, space, bodies, references, met, times),
         watch=watch(experiment, exact),
     )

@@ -27,6 +27,7 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {"exchange: hot wall"} if any(wall.heat is not None for wall in experiment.walls.values()) else set()
     present |= {f"load: {kind}" for kind in LOADS for entry in experiment.loads if getattr(entry, kind) is not None}
     present |= {f"source: {kind}" for kind in SOURCES for entry in experiment.sources if getattr(entry, kind) is not None}
+    present |= {f"inflow: {name}" for name, body in experiment.bodies.items() if body.inflow is not None}
     steady = all(isinstance(one, float) for one in experiment.gravity or ())
     present |= {"gravity" if steady else "gravity: over time"} if experiment.gravity is not None else set()
     present |= set(pairs(experiment)) | {f"tool: {name}, {tool_in_words(tool)}" for name, tool in experiment.tools.items()}
@@ -69,6 +70,24 @@ def at_rest(experiment, known) -> list[str]:
         passes = "pass heat freely" if math.isinf(H) else f"pass heat ({H:g} W/m2K)" if H else "pass no heat"
         found.append(f"contact: {two[0]} and {two[1]} touch and {passes}{'' if frozenset(two) in known else ' (not named)'}")
     return found
+
+
+def swollen(experiment, name: str) -> float:
+    """How many times the volume of its shape a body comes to."""
+    if experiment.bodies[name].inflow is None:
+        return 1.0
+    from mpm.scene.inflow import column  # needs numba
+
+    found = column(experiment, name)
+    return found.length / found.nozzle
+
+
+def layers(experiment) -> int:
+    """Of all that flows in: steps end where one comes in."""
+    from mpm.scene.inflow import column
+
+    flowing = (column(experiment, name) for name, body in experiment.bodies.items() if body.inflow is not None)
+    return sum(round(found.length * experiment.method.particles / experiment.grid.cell) for found in flowing)
 
 
 def ticks(end: float, every: float) -> int:

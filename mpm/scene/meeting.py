@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mpm.boundary import CONTACT
+from mpm.config.rules_inflow import ways
 from mpm.contact.found import BODY
 from mpm.contact.meeting import Meeting
 from mpm.contact.skin import POINT
@@ -56,7 +57,7 @@ def plan_meetings(experiment, sides) -> Meets:
         kind = wall_kind(acts)
         for b, (low, high) in enumerate(boxes):
             gap = (grid.size[axis] - high[axis] if upper else low[axis]) / grid.cell
-            if side == "axis" or (acts != "contact" and gap <= AT):
+            if side == "axis" or (acts != "contact" and gap <= AT and not behind(experiment, names[b], axis, upper)):
                 walls[b, axis, upper] = kind
             elif acts == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
                 stops[b, axis, upper] = rubbing(named.friction) if named is not None else 0.0
@@ -143,6 +144,12 @@ def rubbing(friction) -> float:
     return at(programme(friction), 0.0)
 
 
+def behind(experiment, name: str, axis: int, upper: int) -> bool:
+    """Whether a side lies behind the nozzle of a body that flows in: it comes from there, so it is not bonded to it."""
+    body = experiment.bodies[name]
+    return body.inflow is not None and ways(experiment, body) == [(axis, -1.0 if upper else 1.0)]
+
+
 def reach(experiment, name: str, low, high) -> np.ndarray:
     """How far a body could come towards either side of each direction within the run (D, 2) [m]: thrown, falling, or by changing its shape."""
     end, size = experiment.time.end, float(np.max(high - low))
@@ -150,7 +157,7 @@ def reach(experiment, name: str, low, high) -> np.ndarray:
     speed = max(math.hypot(*(one.velocity or (0.0,))) + (spun(one) if len(experiment.bodies) > 1 else 0.0) for one in experiment.bodies.values())
     g = both_ways(experiment)
     loaded = any(load.traction is not None for load in experiment.loads if load.of == name)
-    if g.any() and material.flow is not None:
+    if body.inflow is not None or (g.any() and material.flow is not None):
         return np.full((len(low), 2), math.inf)
     swells = material.flow is not None or getattr(material.expansion, "kind", "") == "latched"
     stirred = g.any() or speed or loaded or material.expansion is not None or body.angular_velocity is not None

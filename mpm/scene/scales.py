@@ -201,6 +201,10 @@ def of_body(experiment, name: str) -> Scales:
         alpha = ends(material.heat.alpha, low, high)[0]
         low, high = low - rise / (volume * material.density * alpha), high + rise / (volume * material.density * alpha)
     speed = math.hypot(*body.velocity) if body.velocity is not None else 0.0
+    if body.inflow is not None:
+        from mpm.scene.inflow import column
+
+        speed = most(column(experiment, name).speed)
     spin = body.angular_velocity
     speed += (math.hypot(*spin) if isinstance(spin, tuple) else abs(spin or 0.0)) * math.hypot(*extent) / 2
     pull = sum(largest(entry.traction) for entry in experiment.loads if entry.of == name and entry.traction is not None)

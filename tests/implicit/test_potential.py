@@ -24,7 +24,7 @@ def problem(disc, dimension, locking, seed=3):
     body, rng = scene.bodies[0], np.random.default_rng(seed)
     body.particles.B[:] = rng.normal(scale=0.02, size=body.particles.B.shape)
     body.particles.v[:] = rng.normal(scale=1e-4, size=body.particles.v.shape)
-    nodes = new_nodes(scene.space, scene.gradient, body.particles, body.locking, scene.implicit.walls, scene.gravity[-1], 4e3)
+    nodes = new_nodes(scene.space, scene.gradient, body, scene.implicit.walls, scene.gravity[-1], 4e3)
     pushed = may_touch(scene, Clock(scene), 0.4, STIFFNESS * 1e4 / scene.space.h)
     pushed = pushed._replace(gap=pushed.gap - 0.05e-3)  # some in the wall
     pushed.limit[pushed.gap < 0] = np.resize([np.inf, 1e-3, 5e-5, 0.0], (pushed.gap < 0).sum())  # some hold, some slide
