@@ -144,10 +144,10 @@ class Inflow:
             one.passed = passed
         self.show(scene)
 
-    def series(self):
-        """(dataset name, value) of what came in since the start."""
+    def series(self, warm: bool):
+        """(dataset name, value) of what came in since the start; of heat where any body has some."""
         yield from (("mass_inflow", self.mass), ("volume_inflow", self.volume), ("energy_inflow", self.energy))
-        if any(isinstance(one.whole.thermal, Thermal) for one in self.streams):
+        if warm:
             yield "heat_inflow", self.heat
 
     def refer(self, start: dict) -> None:

@@ -195,7 +195,7 @@ class Recorder:
         rubbed = scene.meeting.friction if scene.meeting is not None else 0.0
         if scene.meeting is not None:
             yield "dissipation_friction", rubbed
-        yield from scene.inflow.series() if scene.inflow is not None else ()
+        yield from scene.inflow.series(bool(self.warm)) if scene.inflow is not None else ()
         given = getattr(scene.inflow, "energy", 0.0) + work + clock.swelled + clock.softened
         self.gone = given - clock.dissipated - rubbed - (total - self.series.get("energy_total", [total])[0])
         yield "dissipation_transfer", self.gone
