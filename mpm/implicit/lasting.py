@@ -36,7 +36,7 @@ def lasting_nodes(space, body, reference) -> Nodes:
                 behind = np.sum(one[:, axis] * beyond, axis=1, keepdims=True)
                 one[:, axis] = np.where(beyond, -one[:, axis], one[:, axis]) + np.where(on, lean * behind, 0.0)
         else:
-            flip[:, axis] = beyond
+            flip[:, axis] |= beyond
     flat, turn = node[:, 0], flip[:, 0]
     for a in range(1, D):
         flat = (flat[:, :, None] * shape[a] + node[:, a, None, :]).reshape(len(X), -1)

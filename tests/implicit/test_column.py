@@ -54,6 +54,14 @@ def test_a_column_in_one_step_or_ten(steps):
     assert (np.log2(np.array(errors[:-1]) / errors[1:]) > 2.8).all(), errors
 
 
+@pytest.mark.plain
+def test_a_column_between_two_walls():
+    """On a mirror at either end: mean displacement rho g/(12 (lam + 2 mu)), off by 1.0e-3 and 1.3e-4 of it with 8 and 16 cells."""
+    for n, most in ((8, 2e-3), (16, 2.6e-4)):
+        run = run_point(column(n, grid={"dimension": 1, "size": [1.0], "cell": 1 / n}, gravity=[-0.01], method={"mechanics": "implicit", "frame": "total"}))
+        assert run.outcome.ok and 0.5 - run.finals["position_mean_x"] == pytest.approx(1e3 * 0.01 / 12 / 1e5, rel=most)
+
+
 def test_a_floating_body_does_not_drift():
     """Without a load and with the true inertia, a body that rests stays where it is, however long the step."""
     run = mpm.run(column(16, gravity=[0.0], bodies={"column": {"shape": {"box": {"lower": [0.2], "upper": [1.1]}}, "material": "soft"}},
