@@ -14,6 +14,8 @@ import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read as numpy is imported: a worker a core, and threads of linear algebra that wait by spinning
+
 import numpy as np
 import pytest
 from numba import config as numba_config

@@ -189,6 +189,7 @@ def test_bodies_that_lie_less_than_a_cell_apart_are_told(gap, told, D):
     assert run.outcome.ok and passes == (gap < 0.05) and ("near" in kinds(run.facts["warnings"])) is told
 
 
+@pytest.mark.plain
 def test_a_probe_whose_particle_is_gone(core):
     """A particle beyond the side that the probe hangs on."""
     experiment = scene(0.0, 4.0)

@@ -32,6 +32,7 @@ def slab(rigid, heat=None, **more):
     return mpm.load(data | more)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("transfer", ["apic", "flip blend"])
 def test_moving_bodies(core, transfer):
     experiment = core.experiment(

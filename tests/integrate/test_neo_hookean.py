@@ -56,8 +56,9 @@ def test_the_step_limit_knows_a_bar_that_thins_as_it_stretches():
     assert 1 - report[STRAIN] == pytest.approx((LAW.lam + 2 * LAW.mu * 4) / (LAW.lam + 2 * LAW.mu))
 
 
+@pytest.mark.plain
 def test_a_bar_that_hardly_swings_is_hencky_s(core):
-    """From the config to the record, compiled: at strains of 1e-5 the two laws store the same energy, to the strain."""
+    """From the config to the record: at strains of 1e-5 the two laws store the same energy, to the strain."""
 
     def push(scene):
         particles = scene.bodies[0].particles

@@ -142,6 +142,7 @@ def test_closed_pores(point):
     assert np.abs(run.series["kirchhoff_p"]).max() == pytest.approx(1e4, rel=1e-12)
 
 
+@pytest.mark.plain
 def test_points_of_one_batch(point):
     """Moduli, aspects and expansions of several points in one call are those of each alone."""
     logistic = {"logistic": {"low": 1e4, "high": 5e4, "at": 350, "width": 8}}

@@ -153,6 +153,7 @@ def test_lumped_body_with_latent_heat_is_of_order_two_and_keeps_its_heat():
     assert order(errors) > 1.8
 
 
+@pytest.mark.plain
 def test_a_scene_that_is_not_the_problem_is_refused():
     with pytest.raises(ValueError, match="add up to zero"):
         run_point(problem("shear_heating", **{"loading.0.strain_rate.xx": 0.5}))
