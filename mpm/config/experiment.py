@@ -1,5 +1,6 @@
 """Experiment: one config, validated."""
 
+import functools
 import hashlib
 import json
 import math
@@ -159,16 +160,24 @@ class Experiment(Model):
         return {**data, "sweep": None, "smoke": None, "chart": None, "stability": None, "fit": None}
 
 
+@functools.cache
+def usual_values(kind: type[Model]) -> dict[str, Any]:
+    """The defaults of a model's fields; pydantic makes the mapping of fields anew at every look."""
+    return {name: field.default for name, field in kind.model_fields.items()}
+
+
 def plain(value: Any, defaults: bool = True) -> Any:
     """A model as plain containers: kinds under their name, constants as numbers, infinity as text (JSON has none)."""
+    kind: Any = type(value)
+    if kind is str or kind is bool or kind is int or value is None:  # most of what a sweep asks for, at every point
+        return value
     if isinstance(value, float):
         return value if value != math.inf else ".inf"
     if isinstance(value, Constant):
         return plain(value.value)
     if isinstance(value, Model):
-        fields = type(value).model_fields
-        items = ((name, getattr(value, name)) for name in fields)
-        inner = {name: plain(item, defaults) for name, item in items if defaults or item != fields[name].default}
+        usual, items = usual_values(kind), vars(value)
+        inner = {name: plain(items[name], defaults) for name in usual if defaults or items[name] != usual[name]}
         return {value.kind: inner} if isinstance(value, Kind) else inner
     if isinstance(value, dict):
         return {name: plain(item, defaults) for name, item in value.items()}

@@ -62,6 +62,8 @@ class Quantity:
 
     def validate(self, value: Any) -> float:
         """The value as an SI float within bounds; raises the error that a user reads."""
+        if type(value) is float and self.above < value <= self.most and self.least <= value and 1 / SCALE <= abs(value) <= SCALE:
+            return value
         if isinstance(value, str):
             value = self.read(value)
         elif isinstance(value, bool) or not isinstance(value, int | float):

@@ -9,6 +9,7 @@ file    time (T), series (n, T), finals (k), snapshot (S), grid/<field> (S, [z,]
         attribute `names`: JSON with the names of series and finals; `facts` and `config`: JSON
 """
 
+import functools
 import io
 import json
 from dataclasses import dataclass, field
@@ -65,13 +66,19 @@ class Record:
         return self.facts.get("warnings", [])
 
 
+@functools.lru_cache(maxsize=4096)
+def known(name: str) -> None:
+    """KeyError for a name that the table does not know: it would have neither units nor a long name. Every point of a sweep asks for the same ones."""
+    describe(name)
+
+
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:
     """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series, and its finals become NaN."""
     outcome = run.outcome
     status = OK if outcome.ok else TIMEOUT if outcome.kind == "budget" else DIVERGED
     error = "" if status == OK else f"{STATUS[status]}: {outcome.message or outcome.kind.replace('_', ' ')}"
     for name in (*run.series, *run.finals):
-        describe(name)  # a name that the table does not know would have neither units nor a long name
+        known(name)
     if wrong := [name for name, values in run.series.items() if len(values) != len(run.times)]:
         raise ValueError(f"series that are not one value a time, as when two have one name: {', '.join(wrong)}")
     sizes = [len(next(iter(rows.values()), ())) for rows in run.particles]

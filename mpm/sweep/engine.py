@@ -14,6 +14,7 @@ import time
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 from mpm import compiling
@@ -23,7 +24,7 @@ from mpm.records.variables import FAILED, KILLED, MEMORY, OK, STATUS, TIMEOUT
 from mpm.sweep.background_collect import Gather
 from mpm.sweep.batch_size import BatchSize
 from mpm.sweep.executors import Beat, Compiling, Done, Event, Executor, Job, Lost, Note, Task
-from mpm.sweep.queue import Due, Points, missing
+from mpm.sweep.queue import Configs, Due, Points, missing
 from mpm.sweep.report import Reporter, label
 from mpm.sweep.resources import ADVICE, Resources
 from mpm.sweep.store import Store
@@ -84,7 +85,7 @@ class Engine:
         self.alone: set[str] = store.own(self.due)  # also points that died, or were in a batch that died or overran
         self.running: dict[str, Running] = {}  # by the task's id
         self.attempts: Counter = Counter()
-        self.batch_size, self.names = BatchSize(), store.batch_names()
+        self.batch_size, self.names, self.configs = BatchSize(), store.batch_names(), Configs(points)
         self.failures = self.ran = self.signals = 0
         self.compiling = 0.0  # s that workers spent on compiling
         self.stopped = self.broken = ""
@@ -116,6 +117,8 @@ class Engine:
                     pass
                 if self.stopped and self.left(executor):
                     break
+                if not (executor.free or self.stopped):
+                    self.configs.make(islice(self.due, self.batch_size.last))
                 for event in executor.poll(POLL):
                     self.hear(event)
                 self.look_at_the_clock()
@@ -147,7 +150,7 @@ class Engine:
         while len(run_ids) < size and self.due and self.due.first not in self.alone:
             run_ids.append(self.due.take())
         self.attempts.update(run_ids)
-        jobs = tuple(Job(run_id, self.points.cases[run_id].experiment.resolved(), self.attempts[run_id]) for run_id in run_ids)
+        jobs = tuple(Job(run_id, self.configs.take(run_id), self.attempts[run_id]) for run_id in run_ids)
         seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
         task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "", seen)
         self.running[task.id] = Running(task, time.monotonic())

@@ -1,7 +1,7 @@
 """The points of a plan, which of them are missing, and how they are counted."""
 
 from collections import Counter, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -55,6 +55,22 @@ class ById(Mapping):
 
     def __len__(self) -> int:
         return len(self.ids)
+
+
+class Configs:
+    """Configs of points as workers get them, made ahead while those are busy."""
+
+    def __init__(self, points: Points):
+        self.points = points
+        self.ready: dict[str, dict] = {}
+
+    def make(self, run_ids: Iterable[str]) -> None:
+        """Make those of the points that come next."""
+        self.ready |= {run_id: self.take(run_id) for run_id in run_ids if run_id not in self.ready}
+
+    def take(self, run_id: str) -> dict:
+        """That of a point."""
+        return self.ready.pop(run_id, None) or self.points.cases[run_id].experiment.resolved()
 
 
 class Due:
