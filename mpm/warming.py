@@ -12,6 +12,7 @@ from mpm.integrate.heat_chebyshev import heat_chebyshev, stages
 from mpm.integrate.heat_implicit import heat_implicit
 from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.heat_step import Back, heat_step
+from mpm.integrate.heat_threaded import heat_in_slabs, shared
 from mpm.integrate.timestep import SUBSTEPS, Limits
 from mpm.integrate.xpic import correct, lost_to_grid
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
@@ -37,6 +38,8 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
     if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
         return warm_references(scene, clock, dt) if now.heat or around else outcome(COMPLETED)
     tear_open(scene)
+    if scene.order.sliced:
+        scene.order.refresh()
     for body, one in around:
         one.write(scene.space, body, begun, dt)
     if not all(one.steady for _, one in around):
@@ -67,6 +70,8 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
             if count < 0:
                 return outcome(HEAT_SOLVER, time=clock.time * scene.scale, step=clock.steps)
             clock.iterations += count
+        elif shared(scene, b):
+            gained = heat_in_slabs(scene, b, work.rows, walls, dt, substeps, back)
         elif kind != "explicit":
             gained = heat_chebyshev(scene.space, scene.for_heat[b], work.rows, walls, dt, substeps, back)
         else:

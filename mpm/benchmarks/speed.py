@@ -127,9 +127,24 @@ def grown() -> str:
     return "ns a particle-step, float64, at 1e4, 1e5, 1e6 particles: " + ", ".join(f"{1e6 * one['med_ms'] / one['N']:.1f}" for one in found)
 
 
-def model(*what: str) -> dict:
-    """A line of mpm.benchmarks.speed_models, on one core."""
-    return line([sys.executable, "-m", "mpm.benchmarks.speed_models", *what])
+def model(*what: str, core: int | str = 0) -> dict:
+    """A line of mpm.benchmarks.speed_models, on one core, or on those of the list."""
+    return line([sys.executable, "-m", "mpm.benchmarks.speed_models", *what], core)
+
+
+def landing() -> str:
+    """Two threads on a scene with contact and heat against one."""
+    found: dict[str, list[dict]] = {"1": [], "2": []}
+    for _ in range(3):
+        for count, rows in found.items():
+            rows.append(model("landing", count, core="0,1"))
+    one, two = ({name: statistics.median(row[name] for row in rows) for name in ("steps_ms", "heat_ms")} for rows in found.values())
+    gains = {name: one[name] / two[name] for name in one} | {"both": sum(one.values()) / sum(two.values())}
+    same = "the same" if len({row["bits"] for rows in found.values() for row in rows}) == 1 else "DIFFERENT"
+    return (
+        f"two threads on {found['1'][0]['particles']} particles on a floor, float64: 16 steps with contacts {gains['steps_ms']:.2f} x one, a heat step "
+        f"{gains['heat_ms']:.2f} x one, together {gains['both']:.2f} x one (bits {same}; by one {one['steps_ms']:.0f} and {one['heat_ms']:.0f} ms)"
+    )
 
 
 def whole_step() -> str:
@@ -181,7 +196,7 @@ def fitted(peers: Path | None, python: str | None) -> str:
 
 FIGURES = {
     "random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown, "whole step": whole_step,
-    "empty box": empty_boxes,
+    "empty box": empty_boxes, "landing": landing,
     "smaller models": smaller_models,
 }  # fmt: skip
 

@@ -4,10 +4,12 @@ whole [f32]   ns a particle-step of a sheared cube that flows everywhere (Hencky
 disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the answer, geometry and assembly included
 loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 780 s of baking with its latent front
 apart         ns a particle-step of two cubes in opposite corners of a grid of 128^3, and side by side
+landing N     ms of 16 steps and of a heat step of a warm cube of 512 000 particles that lies on the floor, by N threads, and its bits
 points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
 Run them pinned to one core of an idle machine.
 """
 
+import hashlib
 import json
 import statistics
 import sys
@@ -145,6 +147,27 @@ def apart() -> dict:
     return {name: statistics.median(found) for name, found in times.items()}
 
 
+def landing(threads: str) -> dict:
+    """Medians; every step has contacts. `bits`: a hash of what the particles end with."""
+    from mpm.study.phases import Bench
+
+    rubber = {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}, "heat": {"fourier": {"kappa": 100, "alpha": 1}}}
+    shape = {"box": {"lower": [0.35, 0.35, 0.0], "upper": [1.6, 1.6, 1.25]}}
+    made = Bench(load({
+        "title": "Cube on a floor", "grid": {"dimension": 3, "size": [2, 2, 2], "cell": 1 / 32}, "walls": {"bottom": "contact"}, "gravity": [0, 0, -9.81],
+        "bodies": {"cube": {"shape": shape, "material": "rubber", "velocity": [0, 0, -0.5], "temperature": 400}}, "materials": {"rubber": rubber},
+        "surfaces": [{"of": "cube", "convection": {"beta": 10, "outside": 300}}], "time": {"end": 1},
+    }), int(threads))  # fmt: skip
+    made.block = 16
+    made.steps()
+    made.heat()
+    steps, heat = ([timed(call) for _ in range(ROUNDS)] for call in (made.steps, made.heat))
+    body = made.scene.bodies[0]
+    bits = hashlib.sha256(b"".join(array.tobytes() for array in (*body.particles, body.thermal.theta))).hexdigest()
+    found = {"steps_ms": 1e3 * statistics.median(steps), "heat_ms": 1e3 * statistics.median(heat)}
+    return found | {"touching": bool(made.clock.touching), "particles": made.particles, "bits": bits}
+
+
 def points() -> dict:
     """A batch of relaxations that flow at every step."""
     data = {
@@ -160,4 +183,4 @@ def points() -> dict:
 
 if __name__ == "__main__":
     what, *more = sys.argv[1:]
-    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "points": points}[what](*more)))
+    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "landing": landing, "points": points}[what](*more)))

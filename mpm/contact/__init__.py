@@ -23,6 +23,7 @@ Further files
     found      the contacts of one step
     insync     velocities at the time of the positions
     outlook    how much of a run has something near, from its start alone
+    step_threaded  the same for a scene in slabs, by threads
     texture    what a press that bites twice says of a body
     triangles  signed distance of a closed triangle mesh
     links      where heat passes between bodies

@@ -92,9 +92,8 @@ def push(scene, clock, work: Work, dt: float, kick: float, steps: int, ahead: fl
     reports[:, PARTICLE] = -1
     if clock.touching:
         pace = Pace(dt, kick, ahead, steps, clock.steps, WAVE * scene.space.h / wave)
-        scene.meeting.advance(scene, work.buffers, pace, clock.time, reports)
-    elif scene.order.sliced:
+        return scene.meeting.advance(scene, work.buffers, pace, clock.time, reports)
+    if scene.order.sliced:
         return advance_slabs(scene, method_of(scene), work.buffers, dt, kick, steps, clock.steps, reports)
-    else:
-        advance(method_of(scene), scene.for_motion, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
+    advance(method_of(scene), scene.for_motion, work.buffers, scene.walls, scene.gravity, dt, kick, steps, clock.steps, reports)
     return False

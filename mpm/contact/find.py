@@ -82,13 +82,13 @@ def find_lone_no_exchange(surface, space, body, b, stops, found, count):
 @find_lone.register(Surface)
 def find_lone_surface(surface, space, body, b, stops, found, count):
     D, x, place = directions(space), body.particles.x, np.empty(directions(space))
-    for axis in range(D):
-        for side in range(2):
-            if stops[b, axis, side] < 0.0:
-                continue
-            for p in range(x.shape[0]):
+    for p in range(x.shape[0]):
+        if surface.row[p] >= 0:
+            continue
+        for axis in range(D):
+            for side in range(2):
                 far = before(space, axis, side, x[p, axis])
-                if far >= 0.5 * space.h or surface.row[p] >= 0:
+                if far >= 0.5 * space.h or stops[b, axis, side] < 0.0:
                     continue
                 gap = far - 0.5 * (body.particles.V0[p] * body.particles.J[p] / around(space, x[p, 0])) ** (1.0 / D)
                 if gap >= 0.1 * space.h:

@@ -14,11 +14,12 @@ from mpm.contact.found import BODY
 from mpm.contact.links import PERFECT, find_links
 from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
-from mpm.contact.step import Grids, Pace, Touching, advance_touching
+from mpm.contact.step import Pace, Touching, advance_touching
+from mpm.contact.step_threaded import advance_touching_slabs
 from mpm.contact.texture import texture
 from mpm.contact.tools import NoTools
 from mpm.integrate.heat_step import Back
-from mpm.integrate.step_parts import method_of
+from mpm.integrate.step_parts import Grids, method_of
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.lanes import aligned
@@ -178,12 +179,15 @@ class Meeting:
                         unforeseen = UNPREPARED, b
         return min(found), unforeseen
 
-    def advance(self, scene, buffers, pace: Pace, time: float, reports) -> None:
-        """One block of steps from `time` on in which something may be near; the nodes of a single field are `buffers`."""
+    def advance(self, scene, buffers, pace: Pace, time: float, reports) -> bool:
+        """One block of steps from `time` on in which something may be near; the nodes of a single field are `buffers`. Whether a chunk was late."""
         grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (array[None] for array in buffers)))
         if self.drive is not None:
             self.drive.lay(time, pace.ahead, pace.steps)
+        if scene.order.sliced:
+            return advance_touching_slabs(scene, self.touching, grids, pace, reports)
         advance_touching(method_of(scene), scene.for_motion, self.touching, grids, scene.gravity, pace, reports)
+        return False
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

@@ -12,7 +12,9 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.contact.tools import carry, lightness, recoil
+from mpm.contact.weights import WIDE
 from mpm.jit import kernel
+from mpm.lanes import fma, load4, splat4, store
 
 PUSH, CLOSE, SWEEPS = 0.01, 1e-7, 60
 COARSE = 2e-6  # CLOSE of nodes in float32
@@ -20,40 +22,74 @@ SURE = 0.1  # cells: closer gaps are always in the sweeps
 
 
 class Problem(NamedTuple):
-    """What the impulses of a step are looked for with. F fields, C contacts, M nodes of a contact."""
+    """What the impulses of a step are looked for with. F fields, C contacts, M nodes of a contact, K nodes that any acts on."""
 
     contacts: Any
-    at: np.ndarray  # (C, 2, M) nodes
-    coef: np.ndarray  # (C, 2, D, M) W
-    fields: np.ndarray  # (B,)
-    nodes: np.ndarray  # (F, n, columns) velocity and mass
-    force: np.ndarray  # (F, n or 0, columns) change of velocity in the step
+    at: np.ndarray  # (C, 2, M) their numbers among those
+    coef: np.ndarray  # (C, 2, M, WIDE) W
+    velocity: np.ndarray  # (K, WIDE)
+    light: np.ndarray  # (K,) 1/m; 0 without mass
+    place: np.ndarray  # (K,) where the node is
+    field: np.ndarray  # (K,) of which field
     tools: Any
     impulse: np.ndarray  # (C, D) on the A side [kg m/s]
 
 
 @kernel
-def press(space, problem, count, dt, sound, warm, rows):
-    """The impulses of contacts 0..count, applied to the nodes (and to the changes in `force`, where it has rows) and to free tools.
+def pose(space, contacts, count, weights, fields, nodes, tools, number):
+    """The problem of contacts 0..count, on the nodes (F, n, columns) that they act on; weights: (at, coef) of weights.py. number (n,): -1 before and after."""
+    D, (at, coef), used = directions(space), weights, 0
+    most = at.shape[0] * at.shape[1] * at.shape[2]
+    place, field = np.empty(most, np.int64), np.empty(most, np.int64)
+    for f in range(nodes.shape[0]):
+        first = used
+        for i in range(count):
+            for k in range(2):
+                if contacts.body[i, k] >= 0 and fields[contacts.body[i, k]] == f:
+                    for m in range(at.shape[2]):
+                        n = at[i, k, m]
+                        if number[n] < 0:
+                            number[n], place[used], field[used] = used, n, f
+                            used += 1
+                        at[i, k, m] = number[n]
+        for j in range(first, used):
+            number[place[j]] = -1
+    velocity, light = np.zeros((used, WIDE)), np.zeros(used)
+    for j in range(used):
+        mass = nodes[field[j], place[j], D]
+        light[j] = 1.0 / mass if mass > 0.0 else 0.0
+        for c in range(D):
+            velocity[j, c] = nodes[field[j], place[j], c]
+    return Problem(contacts, at, coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
+
+
+@kernel
+def settle(space, problem, nodes, force):
+    """The velocities of the problem back to the nodes, and their changes to `force`, where it has rows."""
+    for j in range(len(problem.place)):
+        if problem.light[j] > 0.0:
+            f, n = problem.field[j], problem.place[j]
+            for c in range(directions(space)):
+                if force.shape[1] > 0:
+                    force[f, n, c] += problem.velocity[j, c] - nodes[f, n, c]
+                nodes[f, n, c] = problem.velocity[j, c]
+
+
+@kernel
+def press(space, problem, dt, sound, warm, rows, close):
+    """The impulses of all contacts, applied to the velocities of the problem and to free tools.
 
     warm (P, against, D): impulses of the step before; rows (against,): where they are kept. Those of contacts far off are zero.
+    Ends when none changes its speed by more than `close` times that of sound.
     """
-    D, contacts, nodes = directions(space), problem.contacts, problem.nodes
+    contacts, count, D = problem.contacts, len(problem.impulse), directions(space)
     inverse, live, lively = np.zeros(count), np.empty(count, np.int64), 0
-    u = np.empty(D)
+    u = np.zeros(WIDE)
     for i in range(count):
-        most = 0.0
-        for c in range(D):
-            total = lightness(problem.tools, contacts.free[i])
-            for k in range(2):
-                if contacts.body[i, k] >= 0:
-                    f = problem.fields[contacts.body[i, k]]
-                    for m in range(problem.at.shape[2]):
-                        mass = nodes[f, problem.at[i, k, m], D]
-                        if mass > 0.0:
-                            total += problem.coef[i, k, c, m] ** 2 / mass
-            most = max(most, total)
-        speed(problem, i, u)
+        weight = lightness(problem.tools, contacts.free[i])
+        borne(problem, i, u)
+        most = weight + max(u[0], u[1], u[2])
+        speed(problem, i, D, u)
         closing, before = 0.0, 0.0
         for c in range(D):
             closing += min(u[c] * contacts.normal[i, c], 0.0)
@@ -63,79 +99,86 @@ def press(space, problem, count, dt, sound, warm, rows):
             inverse[i], live[lively] = 1.0 / most, i
             lively += 1
     for k in range(lively):
-        begin(problem, live[k], warm, rows, u)
-    close = (COARSE if nodes.itemsize == 4 else CLOSE) * sound
+        begin(problem, live[k], D, warm, rows, u)
     for sweep in range(SWEEPS):
         worst = 0.0
         for k in range(lively):
-            worst = max(worst, one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], dt, sound, inverse, u))
-        if worst <= close:
+            worst = max(worst, one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u))
+        if worst <= close * sound:
             break
 
 
 @kernel
-def speed(problem, i, u):
-    """u of contact i."""
-    contacts = problem.contacts
-    for c in range(len(u)):
-        total = 0.0
-        for k in range(2):
-            if contacts.body[i, k] >= 0:
-                f, way = problem.fields[contacts.body[i, k]], 1.0 if k == 0 else -1.0
-                for m in range(problem.at.shape[2]):
-                    total += way * problem.coef[i, k, c, m] * problem.nodes[f, problem.at[i, k, m], c]
-        u[c] = total - contacts.given[i, c]
-    carry(problem.tools, contacts.free[i], u)
+def borne(problem, i, u):
+    """u <- sum W^2/m of contact i, a direction each."""
+    total, M = splat4(0.0), problem.at.shape[2]
+    for k in range(2):
+        if problem.contacts.body[i, k] >= 0:
+            for m in range(M):
+                weight = load4(problem.coef, WIDE * ((2 * i + k) * M + m))
+                total = fma(weight * weight, splat4(problem.light[problem.at[i, k, m]]), total)
+    store(u, 0, total)
 
 
 @kernel
-def push(problem, i, change):
+def speed(problem, i, D, u):
+    """u of contact i."""
+    contacts, total, M = problem.contacts, splat4(0.0), problem.at.shape[2]
+    for k in range(2):
+        if contacts.body[i, k] >= 0:
+            here, side = WIDE * (2 * i + k) * M, splat4(0.0)
+            for m in range(M):
+                side = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), side)
+            total = total + side if k == 0 else total - side
+    store(u, 0, total)
+    for c in range(D):
+        u[c] -= contacts.given[i, c]
+    carry(problem.tools, contacts.free[i], u[:D])
+
+
+@kernel
+def push(problem, i, D, change):
     """Put a change of impulse on both sides."""
-    D, contacts = len(change), problem.contacts
+    contacts, M, size = problem.contacts, problem.at.shape[2], load4(change, 0)
     for k in range(2):
         if contacts.body[i, k] < 0:
             continue
-        f, way = problem.fields[contacts.body[i, k]], 1.0 if k == 0 else -1.0
-        for m in range(problem.at.shape[2]):
+        here, way = WIDE * (2 * i + k) * M, size if k == 0 else -size
+        for m in range(M):
             n = problem.at[i, k, m]
-            mass = problem.nodes[f, n, D]
-            if mass > 0.0:
-                for c in range(D):
-                    step = way * problem.coef[i, k, c, m] * change[c] / mass
-                    problem.nodes[f, n, c] += step
-                    if problem.force.shape[1] > 0:
-                        problem.force[f, n, c] += step
-    recoil(problem.tools, contacts.free[i], change)
+            weight = load4(problem.coef, here + WIDE * m) * splat4(problem.light[n])
+            store(problem.velocity, WIDE * n, fma(weight, way, load4(problem.velocity, WIDE * n)))
+    recoil(problem.tools, contacts.free[i], change[:D])
 
 
 @kernel
-def begin(problem, i, warm, rows, change):
+def begin(problem, i, D, warm, rows, change):
     """The impulse of the step before, within the cone of this one."""
     contacts = problem.contacts
     if contacts.piece[i] < 0:
         return
     old, along, square = warm[contacts.piece[i], rows[contacts.against[i]]], 0.0, 0.0
-    for c in range(len(change)):
+    for c in range(D):
         along += old[c] * contacts.normal[i, c]
     if not along > 0.0:
         return
-    for c in range(len(change)):
+    for c in range(D):
         change[c] = old[c] - along * contacts.normal[i, c]
         square += change[c] ** 2
     most = contacts.mu[i] * along
     share = 1.0 if square <= most * most else most / square**0.5
-    for c in range(len(change)):
+    for c in range(D):
         change[c] = share * change[c] + along * contacts.normal[i, c]
         problem.impulse[i, c] = change[c]
-    push(problem, i, change)
+    push(problem, i, D, change)
 
 
 @kernel
-def one(problem, i, dt, sound, inverse, u):
+def one(problem, i, D, dt, sound, inverse, u):
     """Relax one contact; by how much its speed changed."""
     contacts, impulse = problem.contacts, problem.impulse
-    D, n, mu = len(u), contacts.normal[i], contacts.mu[i]
-    speed(problem, i, u)
+    n, mu = contacts.normal[i], contacts.mu[i]
+    speed(problem, i, D, u)
     along, un = 0.0, 0.0
     for c in range(D):
         along += impulse[i, c] * n[c]
@@ -155,5 +198,5 @@ def one(problem, i, dt, sound, inverse, u):
         impulse[i, c] = new
         largest = max(largest, abs(u[c]))
     if largest > 0.0:
-        push(problem, i, u)
+        push(problem, i, D, u)
     return largest / inverse[i]

@@ -32,7 +32,7 @@ def new_spots(space):
 def spot(space, gradient, walls, home, spots):
     """Fill the scratch for a particle at `home` (D,) of a body that has mirrors where `walls` (3, 2) say so. Whether a mirror is in sight."""
     at, w, G, way, sign, line, place, mirror = spots
-    D, shape, M, reach = directions(space), extents(space), at.shape[0], place.shape[1]
+    D, shape, reach = directions(space), extents(space), place.shape[1]
     mirrored = False
     for a in range(D):
         i0, wa, ga, da, _ = stencil(space.basis, home[a] / space.h)
@@ -46,27 +46,46 @@ def spot(space, gradient, walls, home, spots):
                 i, mirror[0, a, k], mirror[1, a, k] = 2 * (n - 1 - PAD) - i, 1, i == n - 1 - PAD
             mirrored = mirrored or mirror[0, a, k] >= 0
             place[a, k] = i
-    scale = 0.0 if uses_basis_gradient(gradient) else inverse_moment(space.basis) / space.h**2
+    own = uses_basis_gradient(gradient)
+    scale = 0.0 if own else inverse_moment(space.basis) / space.h**2
+    at[0], w[0], size = 0, 1.0, 1
+    for c in range(D):
+        G[c, 0], way[c, 0] = 1.0, 0.0
+    for a in range(D):  # products, one direction after another, from the last on: what is read is not yet written over
+        for m in range(size - 1, -1, -1):
+            n, weight = at[m] * shape[a], w[m]
+            for k in range(reach):
+                at[m * reach + k], w[m * reach + k] = n + place[a, k], weight * line[0, a, k]
+        for c in range(D):
+            row = 1 if own and c == a else 0
+            for m in range(size - 1, -1, -1):
+                slope, there = G[c, m], way[c, m]
+                for k in range(reach):
+                    if own:
+                        G[c, m * reach + k] = slope * line[row, a, k]
+                    way[c, m * reach + k] = line[2, a, k] if c == a else there
+        size *= reach
+    for c in range(D):
+        for m in range(size):
+            sign[c, m] = 1.0
+            if not own:
+                G[c, m] = scale * w[m] * way[c, m]
+    if mirrored:
+        flip(walls, mirror, sign)
+    return mirrored
+
+
+@kernel
+def flip(walls, mirror, sign):
+    """Signs of nodes that stand for ghosts, or lie on a mirror's own plane."""
+    D, reach, M = mirror.shape[1], mirror.shape[2], sign.shape[1]
     for m in range(M):
-        n, weight, rest, stride = 0, 1.0, m, M
+        rest, stride = m, M
         for a in range(D):
             stride //= reach
             k = rest // stride
             rest -= k * stride
-            n = n * shape[a] + place[a, k]
-            weight *= line[0, a, k]
-        at[m], w[m] = n, weight
-        for c in range(D):
-            slope, flip, rest, stride = 1.0, 1.0, m, M
-            for a in range(D):
-                stride //= reach
-                k = rest // stride
-                rest -= k * stride
-                slope *= line[1, a, k] if a == c else line[0, a, k]
-                if a == c:
-                    way[c, m] = line[2, a, k]
-                if mirror[0, a, k] >= 0 and held(walls[a, mirror[0, a, k]], a, c):
-                    flip *= 0.0 if mirror[1, a, k] == 1 else -1.0
-            sign[c, m] = flip
-            G[c, m] = slope if uses_basis_gradient(gradient) else scale * weight * way[c, m]
-    return mirrored
+            if mirror[0, a, k] >= 0:
+                for c in range(D):
+                    if held(walls[a, mirror[0, a, k]], a, c):
+                        sign[c, m] *= 0.0 if mirror[1, a, k] == 1 else -1.0

@@ -12,13 +12,13 @@ from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import Problem, press, speed
+from mpm.contact.solve import CLOSE, COARSE, pose, press, settle, speed
 from mpm.contact.tools import arm, carry, move_tools, place_tools
-from mpm.contact.weights import weigh
+from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
 from mpm.integrate.fbar import average_all
 from mpm.integrate.grid_heating import compress_all
-from mpm.integrate.step_parts import Buffers, Moment, scratch
+from mpm.integrate.step_parts import Moment, field_buffers, scratch
 from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
 from mpm.transfer import wants_change
@@ -48,15 +48,6 @@ class Touching(NamedTuple):
     room: np.ndarray  # (1,) contacts to make room for
 
 
-class Grids(NamedTuple):
-    """Nodes of every field."""
-
-    nodes: np.ndarray  # (F, 2, n, columns)
-    force: np.ndarray  # (F, 2, n or 0, columns)
-    boxes: np.ndarray  # (F, 2, 3, 2)
-    blocks: np.ndarray  # (F, 2, marks)
-
-
 class Pace(NamedTuple):
     """A block of steps."""
 
@@ -71,27 +62,18 @@ class Pace(NamedTuple):
 @kernel
 def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
     """As explicit.advance with the nodes of every field."""
-    shape, fields, dt, steps, first = extents(method.space), len(touching.walls), pace.dt, pace.steps, field_buffers(grids, 0)
+    shape, fields, steps, first = extents(method.space), len(touching.walls), pace.steps, field_buffers(grids, 0)
     chunk, skin = scratch(method, bodies, first.nodes), new_skin(gravity.shape[1], touching.first)
     for f in range(fields):
         empty(shape, grids.boxes[f, 0])
         empty(shape, grids.boxes[f, 1])
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2
-        acts = pace.kick if step == 0 else dt
         if not opening:
-            for f in range(fields):
-                update(method, field_buffers(grids, f), now, touching.walls[f], gravity[step % len(gravity)], acts)
-            if fields == 1:
-                sharpen(method.scheme, method, bodies, chunk, first, now, touching.walls[0])
-            place_tools(touching.tools, step, pace.ahead, acts)
+            before_contacts(method, bodies, chunk, touching, grids, (step, now), gravity, pace)
             meet(method, bodies, touching, skin, grids, now, pace)
-            move_tools(touching.tools, dt)
-            if fields == 1:
-                nodes, box, walls = first.nodes[now], first.boxes[now], touching.walls[0]
-                average_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt)
-                compress_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt, reports)
-        moment = Moment(now, pace.kick if opening else dt, step, pace.begun, opening, last, steps >= 0)  # marks are always wanted here
+            after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, reports)
+        moment = Moment(now, pace.kick if opening else pace.dt, step, pace.begun, opening, last, steps >= 0)  # marks are always wanted here
         ok, b = True, 0
         for body in literal_unroll(bodies):
             ok = ok and pass_body(method, body, chunk, field_buffers(grids, touching.fields[b]), moment, reports[b])
@@ -104,24 +86,56 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
 
 
 @kernel
-def field_buffers(grids, f):
-    """The nodes of one field."""
-    return Buffers(grids.nodes[f], grids.force[f], grids.boxes[f], grids.blocks[f])
+def before_contacts(method, bodies, chunk, touching, grids, when, gravity, pace):
+    """The nodes of every field after step and buffer `when` were scattered, as if nothing touched; where tools stand."""
+    step, now = when
+    acts = pace.kick if step == 0 else pace.dt
+    for f in range(len(touching.walls)):
+        update(method, field_buffers(grids, f), now, touching.walls[f], gravity[step % len(gravity)], acts)
+    if len(touching.walls) == 1:
+        sharpen(method.scheme, method, bodies, chunk, field_buffers(grids, 0), now, touching.walls[0])
+    place_tools(touching.tools, step, pace.ahead, acts)
+
+
+@kernel
+def after_contacts(method, bodies, chunk, touching, grids, now, dt, reports):
+    """What is done to nodes whose contacts are solved."""
+    move_tools(touching.tools, dt)
+    if len(touching.walls) == 1:
+        first, walls = field_buffers(grids, 0), touching.walls[0]
+        nodes, box = first.nodes[now], first.boxes[now]
+        average_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt)
+        compress_all(method.space, method.gradient, bodies, chunk, nodes, box, walls, dt, reports)
 
 
 @kernel
 def meet(method, bodies, touching, skin, grids, now, pace):
     """One step's contacts, on the nodes of buffer `now`; and the books of it."""
-    space = method.space
+    contacts, count = seek(method.space, bodies, touching, skin)
+    if count > 0:
+        nodes = grids.nodes[:, now]
+        weights = weigh(method.space, method.gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
+        resolve(method, touching, skin, grids, now, pace, (contacts, count, weights))
+
+
+@kernel
+def seek(space, bodies, touching, skin):
+    """(contacts, how many) of the present positions."""
     lay_skins(space, bodies, skin)
-    contacts, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
+    found, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
     if count == 0:
         touching.warm[:] = 0.0
-        return
+    return found, count
+
+
+@kernel
+def resolve(method, touching, skin, grids, now, pace, near):
+    """The impulses of the contacts, on the nodes; near: contacts, how many, weights."""
+    (contacts, count, weights), space = near, method.space
     D, shape, nodes, force = directions(space), extents(space), grids.nodes[:, now], grids.force[:, now]
-    at, coef = weigh(space, method.gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
-    problem = Problem(contacts, at, coef, touching.fields, nodes, force, touching.tools, np.zeros((count, D)))
-    press(space, problem, count, pace.ahead, pace.sound, touching.warm, touching.rows)
+    problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
+    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows, COARSE if nodes.itemsize == 4 else CLOSE)
+    settle(space, problem, nodes, force)
     if keep_books(space, touching, skin, problem, pace.dt):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
@@ -133,7 +147,7 @@ def meet(method, bodies, touching, skin, grids, now, pace):
 def keep_books(space, touching, skin, problem, dt):
     """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
     D, B, pressed, contacts, impulse = directions(space), len(touching.first) - 1, False, problem.contacts, problem.impulse
-    way, moment, still, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(D)
+    way, moment, still, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(WIDE)
     touching.warm[:] = 0.0
     for i in range(len(impulse)):
         s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
@@ -151,7 +165,7 @@ def keep_books(space, touching, skin, problem, dt):
             if s >= 0:
                 touching.warm[s, row, c] = impulse[i, c]
         if contacts.mu[i] > 0.0 and along > 0.0:
-            speed(problem, i, slip)
+            speed(problem, i, D, slip)
             for c in range(D):
                 touching.rubbed[0] -= (impulse[i, c] - along * contacts.normal[i, c]) * slip[c]
         for c in range(3):

@@ -8,8 +8,6 @@ With W a body in equilibrium under a traction has the same strain in its surface
 look along the normal, keep w~. In an axisymmetric body V_p carries its hoop stress too: r_i += V_p w_ip/r_p along r.
 """
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numba import literal_unroll
 
@@ -18,50 +16,57 @@ from mpm.contact.skin import hoop
 from mpm.contact.spots import new_spots, seen, spot
 from mpm.jit import kernel
 
-
-class Weights(NamedTuple):
-    """What is found, and scratch. C contacts, M nodes of each."""
-
-    at: np.ndarray  # (C, 2, M) nodes
-    coef: np.ndarray  # (C, 2, D, M) W
-    number: np.ndarray  # (nodes,) -1 before and after
-    spots: Any
+WIDE = 4  # numbers of a weight: D directions and nothing
 
 
 @kernel
 def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, number):
-    """(at (count, 2, M), coef (count, 2, D, M)) of the contacts; nodes (F, n, columns); number (nodes,) -1 before and after."""
-    D, M = directions(space), seen(space) ** directions(space)
-    weights, b = Weights(np.zeros((count, 2, M), np.int64), np.zeros((count, 2, D, M)), number, new_spots(space)), 0
+    """(at (count, 2, M), coef (count, 2, M, WIDE)) of the contacts; nodes (F, n, columns); number (nodes,) -1 before and after."""
+    weights, b = new_weights(space, count), 0
     for body in literal_unroll(bodies):
-        f = fields[b]
-        weigh_body(space, gradient, body, b, walls[f], skin, contacts, count, nodes[f], weights)
+        f, x = fields[b], body.particles.x
+        box, short = mark(space, gradient, b, walls[f], contacts, count, number)
+        if len(short) > 0:
+            fall_short(space, gradient, body.particles, b, walls[f], skin, box, number, short, (0, x.shape[0]))
+        shares(space, gradient, b, walls[f], contacts, (0, count), nodes[f], number, short, weights)
+        unmark(contacts, b, count, number, weights)
         b += 1
-    return weights.at, weights.coef
+    return weights
 
 
 @kernel
-def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, weights):
-    """One body's sides of the contacts."""
-    at, coef, number, spots = weights.at, weights.coef, weights.number, weights.spots
-    D, M, marked = directions(space), at.shape[2], 0
+def new_weights(space, count):
+    """Room for (at, coef) of `count` contacts."""
+    M = seen(space) ** directions(space)
+    return np.zeros((count, 2, M), np.int64), np.zeros((count, 2, M, WIDE))
+
+
+@kernel
+def mark(space, gradient, b, walls, contacts, count, number):
+    """Number the nodes where body b is balanced; the box (low, high) of the particles there, and room for r and T of each node."""
+    D, spots, marked = directions(space), new_spots(space), 0
     low, high = np.full(D, 1e300), np.full(D, -1e300)
     for i in range(count):
         for k in range(2):
             if contacts.body[i, k] != b or not contacts.balanced[i, k]:
                 continue
             spot(space, gradient, walls, contacts.home[i, k], spots)
-            for m in range(M):
-                if number[spots[0][m]] < 0:
-                    number[spots[0][m]] = marked
+            for n in spots[0]:
+                if number[n] < 0:
+                    number[n] = marked
                     marked += 1
             for a in range(D):
                 low[a], high[a] = min(low[a], contacts.home[i, k, a]), max(high[a], contacts.home[i, k, a])
-    short = np.zeros((marked, D + D * D))  # r, and T
-    if marked > 0:
-        fall_short(space, gradient, body.particles, b, walls, skin, (low, high), number, spots, short)
+    return (low, high), np.zeros((marked, D + D * D))
+
+
+@kernel
+def shares(space, gradient, b, walls, contacts, some, nodes, number, short, weights):
+    """W of body b for the contacts some[0] <= i < some[1]."""
+    (at, coef), D, spots = weights, directions(space), new_spots(space)
+    M = at.shape[2]
     system, W = np.empty((D + 1, D + 2)), np.empty(M)
-    for i in range(count):
+    for i in range(some[0], some[1]):
         for k in range(2):
             if contacts.body[i, k] != b:
                 continue
@@ -72,14 +77,19 @@ def weigh_body(space, gradient, body, b, walls, skin, contacts, count, nodes, we
             for m in range(M):
                 at[i, k, m] = spots[0][m]
                 for c in range(D):
-                    coef[i, k, c, m] = W[m] * spots[4][c, m]
+                    coef[i, k, m, c] = W[m] * spots[4][c, m]
             if mirrored:
                 merge(at[i, k], coef[i, k])
+
+
+@kernel
+def unmark(contacts, b, count, number, weights):
+    """Take the numbers of `mark` away."""
     for i in range(count):
         for k in range(2):
             if contacts.body[i, k] == b and contacts.balanced[i, k]:
-                for m in range(M):
-                    number[at[i, k, m]] = -1
+                for n in weights[0][i, k]:
+                    number[n] = -1
 
 
 @kernel(inline=True)
@@ -92,12 +102,13 @@ def plain(spots, home, point, W):
 
 
 @kernel
-def fall_short(space, gradient, particles, b, walls, skin, box, number, spots, short):
-    """r and T of the marked nodes, from the particles and pieces of body b within `box` (low, high)."""
+def fall_short(space, gradient, particles, b, walls, skin, box, number, short, some):
+    """r and T of the marked nodes, from the particles some[0] <= p < some[1] of body b within `box` (low, high), and from their pieces."""
+    spots = new_spots(space)
     at, w, G, _, sign = spots[0], spots[1], spots[2], spots[3], spots[4]
     low, high = box
     D, M, far, home, W = directions(space), len(at), seen(space) * space.h, np.empty(directions(space)), np.empty(len(at))
-    for p in range(particles.x.shape[0]):
+    for p in range(some[0], some[1]):
         inside = True
         for a in range(D):
             home[a] = particles.x[p, a]
@@ -114,7 +125,7 @@ def fall_short(space, gradient, particles, b, walls, skin, box, number, spots, s
                 if hoop(space):
                     short[n, 0] += V * w[m] / home[0] * sign[0, m]
     for s in range(skin.first[b], skin.first[b + 1]):
-        inside = skin.area[s] > 0.0
+        inside = skin.area[s] > 0.0 and some[0] <= skin.owner[s] < some[1]
         for a in range(D):
             inside = inside and low[a] - far < skin.home[s, a] < high[a] + far
         if not inside:
@@ -198,7 +209,7 @@ def merge(at, coef):
     for m in range(len(at)):
         for q in range(m):
             if at[q] == at[m]:
-                for c in range(coef.shape[0]):
-                    coef[c, q] += coef[c, m]
-                    coef[c, m] = 0.0
+                for c in range(WIDE):
+                    coef[q, c] += coef[m, c]
+                    coef[m, c] = 0.0
                 break

@@ -19,6 +19,7 @@ Further files
     fracture_surface     new surface where a body tears
     given_source         the body force and the heat that a config gives
     fragments            gaps in a body
+    heat_threaded        the explicit or stabilised heat step of a body in slabs, by threads
     grid_heating         elastic heating as the source document has it
     nozzle               what of a body is still in its nozzle
     sorting              particles in the order of the nodes that they touch, where that pays

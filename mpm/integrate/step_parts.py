@@ -31,6 +31,21 @@ class Buffers(NamedTuple):
     blocks: np.ndarray  # (2, marks) blocks of nodes touched (mpm.boundary.blocks)
 
 
+class Grids(NamedTuple):
+    """Nodes of F velocity fields: `Buffers` of each."""
+
+    nodes: np.ndarray  # (F, 2, n, columns)
+    force: np.ndarray  # (F, 2, n or 0, columns)
+    boxes: np.ndarray  # (F, 2, 3, 2)
+    blocks: np.ndarray  # (F, 2, marks)
+
+
+@kernel
+def field_buffers(grids, f):
+    """The nodes of one field."""
+    return Buffers(grids.nodes[f], grids.force[f], grids.boxes[f], grids.blocks[f])
+
+
 class Moment(NamedTuple):
     """Where in a block of steps of the run."""
 

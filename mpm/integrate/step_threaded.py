@@ -6,7 +6,7 @@ the odd one, each in the order of its particles, whichever thread does what and 
 
 Particles drift between sorts. A slab may touch nodes up to half way to where the next slab but one reached in the step before; a chunk that would touch more is
 kept in its particles, and scattered after all slabs, by one thread: `late`. So no drift is too fast to be right; a block with late chunks is sorted anew.
-Nodal passes of schemes that want them (XPIC, F-bar, heating on the grid) and heat steps are one thread's.
+Nodal passes of schemes that want them (XPIC, F-bar, heating on the grid) are one thread's. Contacts: contact/step_threaded.py; heat: heat_threaded.py.
 """
 
 import threading
@@ -23,7 +23,7 @@ from mpm.boundary.walls import empty
 from mpm.integrate.active_nodes import SLACK, reaches, touch
 from mpm.integrate.dither import dither
 from mpm.integrate.explicit import clean, on_nodes, step_chunk
-from mpm.integrate.step_parts import Moment, scratch
+from mpm.integrate.step_parts import Grids, Moment, field_buffers, scratch
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SOURCED, SPEED, STEP, STRAIN, SWELL, SWELLED, WORKED
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, least, load8, maximum, minimum, most
@@ -33,37 +33,39 @@ STILL, LATE = 0, 1
 
 
 class Slabs(NamedTuple):
-    """What the threads share. M slabs, B bodies."""
+    """What the threads share. M slabs, B bodies, F velocity fields."""
 
     axis: int
+    fields: np.ndarray  # (B,) field of each body
     starts: np.ndarray  # (B, M + 1) first particle of each slab
     low: np.ndarray  # (M,) nodes that a slab may touch: low <= node < high along the axis
     high: np.ndarray  # (M,)
     late: np.ndarray  # (B, N) whether the chunk that begins at a particle is to be scattered after all slabs
     strays: np.ndarray  # (M,) how many such chunks a slab has
-    boxes: np.ndarray  # (M + 1, 3, 2) nodes touched; the last: by late chunks
+    boxes: np.ndarray  # (M + 1, F, 3, 2) nodes touched; the last: by late chunks
     reports: np.ndarray  # (M + 1, B, REPORT)
 
 
 @kernel
-def pass_slabs(method, bodies, slabs, which, buffers, moment, late):
+def pass_slabs(method, bodies, slabs, which, grids, moment, late):
     """Gather from buffer `now`, respond, and scatter on to the other, for the slabs `which`, one after another; of `late` chunks what is left of it."""
-    chunk = scratch(method, bodies, buffers.nodes)
+    chunk = scratch(method, bodies, grids.nodes[0])
     for s in which:
         if not late:
-            empty(extents(method.space), slabs.boxes[s])
+            for f in range(slabs.boxes.shape[1]):
+                empty(extents(method.space), slabs.boxes[s, f])
             slabs.strays[s] = 0
         b = 0
         for body in literal_unroll(bodies):
-            pass_part(method, body, chunk, slabs, s, b, buffers, moment, late)
+            pass_part(method, body, chunk, slabs, s, b, field_buffers(grids, slabs.fields[b]), moment, late)
             b += 1
 
 
 @kernel
 def pass_part(method, body, chunk, slabs, s, b, buffers, moment, after):
-    """One body's part of a slab."""
+    """One body's part of a slab, on the nodes of its field."""
     row = slabs.strays.shape[0] if after else s
-    space, now, report = method.space, moment.now, slabs.reports[row, b]
+    space, now, report, box = method.space, moment.now, slabs.reports[row, b], slabs.boxes[row, slabs.fields[b]]
     here, push, there, pushed = buffers.nodes[now], buffers.force[now], buffers.nodes[1 - now], buffers.force[1 - now]
     x, late, begin, end = body.particles.x, slabs.late[b], slabs.starts[b, s], slabs.starts[b, s + 1]
     part = Moment(now, moment.dt, moment.step, moment.begun, moment.opening or after, moment.last, moment.sparse)
@@ -83,7 +85,7 @@ def pass_part(method, body, chunk, slabs, s, b, buffers, moment, after):
             deliver(body.particles, first, chunk, count)
             late[first] = LATE
             slabs.strays[s] += 1
-    touch(space, x, begin, end, reach, slabs.boxes[row], buffers.blocks[1 - now], moment.sparse)
+    touch(space, x, begin, end, reach, box, buffers.blocks[1 - now], moment.sparse)
 
 
 @kernel
@@ -108,40 +110,54 @@ def nodal_phase(method, bodies, buffers, now, sparse, walls, gravity, times, rep
 
 def advance_slabs(scene, method, buffers, dt, kick, steps, begun, reports) -> bool:
     """`steps` steps of `dt`, as explicit.advance, of a scene whose particles lie in slabs (scene.order). Whether a chunk was late."""
-    bodies, shape, boxes, starts, axis = scene.for_motion, extents(scene.space), buffers.boxes, scene.order.starts, scene.order.axis
-    M = starts.shape[1] - 1
+
+    def between(step, now, sparse, slabs, crew):
+        gravity = scene.gravity[step % len(scene.gravity)]
+        nodal_phase(method, scene.for_motion, buffers, now, sparse, scene.walls, gravity, (dt, kick if step == 0 else dt), slabs.reports[-1])
+
+    grids = Grids(*(array[None] for array in buffers))
+    return steps_in_slabs(scene, method, grids, np.zeros(len(reports), np.int64), between, (dt, kick, steps, begun), False, reports)
+
+
+def steps_in_slabs(scene, method, grids, fields, between, pace, marked, reports) -> bool:
+    """Steps of slabs on the nodes of several fields: (dt, kick, steps, begun) = pace. Whether a chunk was late.
+
+    between(step, now, sparse, slabs, crew): what is done to the nodes between scatter and gather; marked: it wants to know which were touched.
+    """
+    bodies, shape, starts, axis, (dt, kick, steps, begun) = scene.for_motion, extents(scene.space), scene.order.starts, scene.order.axis, pace
+    M, F, boxes = starts.shape[1] - 1, len(grids.nodes), grids.boxes
     largest = max(len(body.particles.m) for body in bodies)
     slabs = Slabs(
-        axis, starts, np.zeros(M, np.int64), np.zeros(M, np.int64), np.zeros((len(bodies), largest), np.uint8), np.zeros(M, np.int64),
-        np.zeros((M + 1, 3, 2), np.int64), np.repeat(reports[None], M + 1, axis=0),
+        axis, fields, starts, np.zeros(M, np.int64), np.zeros(M, np.int64), np.zeros((len(bodies), largest), np.uint8), np.zeros(M, np.int64),
+        np.zeros((M + 1, F, 3, 2), np.int64), np.repeat(reports[None], M + 1, axis=0),
     )  # fmt: skip
     reach = scene.order.reach
     order, strayed, sparse = wave(M), False, True
-    for box in boxes:
+    for box in boxes.reshape(-1, 3, 2):
         empty(shape, box)
     with Crew(min(scene.threads, M)) as crew:
         for step in range(-1, steps):
             opening, last, now = step < 0, step == steps - 1, max(step, -1) % 2
             if not opening:
-                gravity = scene.gravity[step % len(scene.gravity)]
-                nodal_phase(method, bodies, buffers, now, sparse, scene.walls, gravity, (dt, kick if step == 0 else dt), slabs.reports[M])
+                between(step, now, sparse, slabs, crew)
             share_out(reach, slabs)
             moment = Moment(now, kick if opening else dt, step, begun, opening, last, sparse)
-            crew.work(order, lambda which, m=moment: pass_slabs(method, bodies, slabs, which, buffers, m, False))
-            empty(shape, slabs.boxes[M])
+            crew.work(order, lambda which, m=moment: pass_slabs(method, bodies, slabs, which, grids, m, False))
+            for box in slabs.boxes[M]:
+                empty(shape, box)
             if slabs.strays.any() and not (slabs.reports[..., CODE] != 0).any():
                 strayed = True
-                pass_slabs(method, bodies, slabs, np.flatnonzero(slabs.strays), buffers, moment, True)
+                pass_slabs(method, bodies, slabs, np.flatnonzero(slabs.strays), grids, moment, True)
             if (slabs.reports[..., CODE] != 0).any():
                 break
-            if not opening:
-                clean(method, buffers, now)
+            for f in range(F if not opening else 0):
+                clean(method, field_buffers(grids, f), now)
             if not last:
-                boxes[1 - now, :, 0], boxes[1 - now, :, 1] = slabs.boxes[:, :, 0].min(axis=0), slabs.boxes[:, :, 1].max(axis=0)
-                used = slabs.boxes[:M, axis]
+                boxes[:, 1 - now, :, 0], boxes[:, 1 - now, :, 1] = slabs.boxes[..., 0].min(axis=0), slabs.boxes[..., 1].max(axis=0)
+                used = np.stack([slabs.boxes[:M, :, axis, 0].min(axis=1), slabs.boxes[:M, :, axis, 1].max(axis=1)], axis=1)
                 reach[used[:, 1] > used[:, 0]] = used[used[:, 1] > used[:, 0]]
             if opening:
-                sparse = bool(thin(shape, boxes[1 - now], buffers.blocks[1 - now]))
+                sparse = marked or bool(thin(shape, boxes[0, 1 - now], grids.blocks[0, 1 - now]))
     for b, report in enumerate(reports):
         together(report, slabs.reports[:, b])
     return strayed

@@ -84,7 +84,7 @@ def test_no_two_slabs_of_a_kind_may_touch_one_node():
     random = np.random.default_rng(0)
     for _ in range(200):
         reach = np.sort(random.integers(0, 100, (8, 2)), axis=1)
-        made = Slabs(0, None, np.zeros(8, np.int64), np.zeros(8, np.int64), *[None] * 4)
+        made = Slabs(0, None, None, np.zeros(8, np.int64), np.zeros(8, np.int64), *[None] * 4)
         share_out(reach, made)
         assert all(made.high[s] <= made.low[t] for s in range(8) for t in range(s + 2, 8))
 
