@@ -108,7 +108,7 @@ def press(space, problem, dt, sound, warm, rows, close):
             break
 
 
-@kernel
+@kernel(inline=True)
 def borne(problem, i, u):
     """u <- sum W^2/m of contact i, a direction each."""
     total, M = splat4(0.0), problem.at.shape[2]
@@ -120,15 +120,27 @@ def borne(problem, i, u):
     store(u, 0, total)
 
 
-@kernel
+@kernel(inline=True)
+def through(problem, i, k):
+    """sum W v of side k of contact i: three sums at once, as each waits for its last product."""
+    M = problem.at.shape[2]
+    here, one, two, three = WIDE * (2 * i + k) * M, splat4(0.0), splat4(0.0), splat4(0.0)
+    for m in range(0, M - 2, 3):
+        one = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), one)
+        two = fma(load4(problem.coef, here + WIDE * (m + 1)), load4(problem.velocity, WIDE * problem.at[i, k, m + 1]), two)
+        three = fma(load4(problem.coef, here + WIDE * (m + 2)), load4(problem.velocity, WIDE * problem.at[i, k, m + 2]), three)
+    for m in range(M - M % 3, M):
+        one = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), one)
+    return one + two + three
+
+
+@kernel(inline=True)
 def speed(problem, i, D, u):
     """u of contact i."""
-    contacts, total, M = problem.contacts, splat4(0.0), problem.at.shape[2]
+    contacts, total = problem.contacts, splat4(0.0)
     for k in range(2):
         if contacts.body[i, k] >= 0:
-            here, side = WIDE * (2 * i + k) * M, splat4(0.0)
-            for m in range(M):
-                side = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), side)
+            side = through(problem, i, k)
             total = total + side if k == 0 else total - side
     store(u, 0, total)
     for c in range(D):
@@ -136,7 +148,7 @@ def speed(problem, i, D, u):
     carry(problem.tools, contacts.free[i], u[:D])
 
 
-@kernel
+@kernel(inline=True)
 def push(problem, i, D, change):
     """Put a change of impulse on both sides."""
     contacts, M, size = problem.contacts, problem.at.shape[2], load4(change, 0)
@@ -151,7 +163,7 @@ def push(problem, i, D, change):
     recoil(problem.tools, contacts.free[i], change[:D])
 
 
-@kernel
+@kernel(inline=True)
 def begin(problem, i, D, warm, rows, change):
     """The impulse of the step before, within the cone of this one."""
     contacts = problem.contacts
@@ -173,7 +185,7 @@ def begin(problem, i, D, warm, rows, change):
     push(problem, i, D, change)
 
 
-@kernel
+@kernel(inline=True)
 def one(problem, i, D, dt, sound, inverse, u):
     """Relax one contact; by how much its speed changed."""
     contacts, impulse = problem.contacts, problem.impulse

@@ -28,7 +28,7 @@ def new_spots(space):
     return np.empty(M, np.int64), np.empty(M), np.empty((D, M)), np.empty((D, M)), np.empty((D, M)), line, place, mirror
 
 
-@kernel
+@kernel(inline=True)
 def spot(space, gradient, walls, home, spots):
     """Fill the scratch for a particle at `home` (D,) of a body that has mirrors where `walls` (3, 2) say so. Whether a mirror is in sight."""
     at, w, G, way, sign, line, place, mirror = spots

@@ -90,7 +90,7 @@ def move_tools_tools(tools, dt):
                 tools.shift[t, a] += dt * tools.v[t, a]
 
 
-@role
+@role(inline=True)
 def lightness(tools, t):
     """1/M of tool t; 0 of one that goes as it is told, and of none."""
     raise TypeError(f"no tools of {type(tools).__name__}")
@@ -106,7 +106,7 @@ def lightness_tools(tools, t):
     return tools.light[t] if t >= 0 else 0.0
 
 
-@role
+@role(inline=True)
 def carry(tools, t, u):
     """u (D,) less the velocity of a free tool."""
     raise TypeError(f"no tools of {type(tools).__name__}")
@@ -124,7 +124,7 @@ def carry_tools(tools, t, u):
             u[a] -= tools.v[t, a]
 
 
-@role
+@role(inline=True)
 def recoil(tools, t, change):
     """The velocity of a free tool after an impulse `change` (D,) on a body."""
     raise TypeError(f"no tools of {type(tools).__name__}")
