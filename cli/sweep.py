@@ -7,6 +7,7 @@ import typer
 from mpm_cli.options import Checkpoints, Config, Jobs, Json, MaxRuns, Out, Quiet, Set, Smoke, Strict, again, amount, limit, load
 from mpm_cli.progress import reporter
 from mpm_cli.talk import document, internal, leave_at_once, say, warn
+from mpm_cli.unseen import unseen
 
 RERUN = ("failed", "stale", "all")
 
@@ -75,11 +76,14 @@ def sweep(
 
         plan(config, out, jobs, set_, rerun, max_runs, smoke, as_json)
         return
+    from mpm.config.units import forget
     from mpm.records.checkpoint import EVERY
     from mpm.sweep.api import default_out, execute
     from mpm.sweep.engine import Options
 
-    experiment = load(config, set_, smoke)
+    with unseen("scipy"):  # pint would import it for nothing
+        experiment = load(config, set_, smoke)
+    forget()
     failures, every = 1 if fail_fast else max_failures, checkpoint or EVERY
     options = Options(
         jobs, timeout, retries, time_budget, failures, rerun, smoke, scheduler=scheduler, shared=results == "shared", memory=memory, checkpoint=every

@@ -10,6 +10,7 @@ Numbers and exponents are read here and only the bare unit reaches pint, so that
 
 import difflib
 import functools
+import gc
 import re
 from typing import Any
 
@@ -41,6 +42,12 @@ def registry() -> Any:
     import pint
 
     return pint.UnitRegistry()
+
+
+def forget() -> None:
+    """Let go of pint's registry, some megabytes; it is made again where it is asked for."""
+    registry.cache_clear()
+    gc.collect()
 
 
 def article(noun: str) -> str:
