@@ -118,8 +118,8 @@ def called(name: str) -> str:
 
 
 def short(long_name: str) -> str:
-    """A long name without its afterthoughts: up to the first semicolon, colon or bracket, and without its weight."""
-    return re.sub(r", weighted [^,]*", "", re.split(r"[;:(]", long_name)[0]).strip()
+    """A long name without its afterthoughts: up to the first semicolon, colon or bracket, and without what it was weighted with or averaged over."""
+    return re.sub(r", (weighted|mean since) [^,]*", "", re.split(r"[;:(]", long_name)[0]).strip()
 
 
 def title_case(text: str) -> str:

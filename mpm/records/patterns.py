@@ -3,9 +3,9 @@
 import re
 
 MET = {  # what a wall, a tool or another body does: <what>.<of>, with a direction behind it for forces and torques
-    "force": ("N", "mean force since the record before, on bodies by {}"),
-    "torque": ("N m", "mean torque since the record before, on bodies by {}, about the tool's centre or the origin of coordinates"),
-    "area": ("m2", "mean area in touch since the record before, with {}"),
+    "force": ("N", "force on bodies by {}, mean since the record before"),
+    "torque": ("N m", "torque on bodies by {}, mean since the record before, about the tool's centre or the origin of coordinates"),
+    "area": ("m2", "area in touch with {}, mean since the record before"),
     "heat": ("J", "heat taken in by the first body from the second since the start, {}"),
     "travel": ("m", "how far {} has moved since the start"),
     "hardness": ("N", "largest force of the first bite of {}"),
