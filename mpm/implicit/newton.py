@@ -96,6 +96,8 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
     free, r, matrix = nodes.eq >= 0, np.empty(guess.shape), new_matrix(problem.space, nodes)
     depth = np.zeros(len(problem.pushed.owner))
     u, shifts = guess.copy(), 0
+    if not nodes.unknowns:  # all of it is in its nozzle
+        return Answer(u, 0, 0, depth)
     Pi = problem.potential(u, r, matrix, depth, True)
     if not math.isfinite(Pi) and u.any():
         u[free] = 0.0
