@@ -63,7 +63,8 @@ def test_every_array_of_particles_is_named(core):
     sets = {"ellipse": FLOW["ellipse"] | {"M": {"set": {"raw": 0.05, "baked": 0.1, "rate": 0.1}}}}
     given = [{"of": "body", "heat": {"formula": "1 + x"}, "force": [{"formula": "y"}, 0.0]}]
     materials = ({"solid": latched}, {"solid": solid | {"flow": sets}})
-    for sections in ({"loads": load}, {"loads": pressed}, *({"materials": one} for one in materials), {"sources": given}):
+    poured = {"body": core.config(2)["bodies"]["body"] | {"inflow": {"velocity": [0.5, 0.0]}}}
+    for sections in ({"loads": load}, {"loads": pressed}, *({"materials": one} for one in materials), {"sources": given}, {"bodies": poured}):
         body = build(core.experiment(2, {"method.particles": 3}, **sections)).bodies[0]
         N = len(body.particles.m)
         found = {(type(part), name) for part in parts(body) for name, a in zip(part._fields, part, strict=True) if isinstance(a, np.ndarray) and len(a) == N}
