@@ -118,15 +118,24 @@ class Bar(Reporter):
         self.write()
 
 
+def loaded(experiment: Any) -> Any:
+    """The experiment, read first where it is a file or a dict."""
+    from mpm.config import load
+
+    return load(experiment) if isinstance(experiment, (str, Path, dict)) else experiment
+
+
 def run(experiment: Any, beat: Callable[[float, float], bool] | None = None, threads: int = 1) -> Results:
     """`mpm.run`: the first point as an xarray.DataTree (/, series, grid, particles). A point that fails is `status` 4 with its `error`, not an exception.
 
+    experiment  of `mpm.load`, or what it loads: a file, or a dict
     beat      called with (fraction, time [s]); whether to stop. In a notebook a bar unless given.
     threads   that share the work of one large run
     """
     from mpm import compiling
     from mpm.sweep import api
 
+    experiment = loaded(experiment)
     if beat is not None or not in_notebook():
         return shown(api.run(experiment, beat, threads))
     bar = Bar()
@@ -147,4 +156,4 @@ def sweep(experiment: Any, out: Path | str | None = None, jobs: int | str = "aut
     """`mpm.sweep`: see `mpm.sweep.api.sweep`; in a notebook with a bar unless a reporter is given."""
     from mpm.sweep import api
 
-    return shown(api.sweep(experiment, out, jobs, max_runs, reporter or (Bar() if in_notebook() else None), **more))
+    return shown(api.sweep(loaded(experiment), out, jobs, max_runs, reporter or (Bar() if in_notebook() else None), **more))

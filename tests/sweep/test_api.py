@@ -1,3 +1,4 @@
+import json
 import subprocess
 import sys
 
@@ -17,6 +18,10 @@ def test_python_gives_the_same_as_the_shell(config, tmp_path, monkeypatch):
     assert tree.temperature_mean.sel(kappa=0.5).item() == 300.5 and list(tree.children) == ["series", "grid", "particles"]
     tree["series"].temperature_centre.sel(kappa=0.4, method="nearest")
     assert mpm.sweep(experiment, out=tmp_path / "out").identical(tree)
+    (tmp_path / "a.yaml").write_text(json.dumps(config([0.2, 0.5])))
+    assert mpm.run(config([0.2, 0.5])).temperature_mean.item() == mpm.run(tmp_path / "a.yaml").temperature_mean.item() == 300.2  # a dict, a file
+    with pytest.raises(mpm.ConfigError, match="unknown key 'gird'"):
+        mpm.run({"gird": {}})
 
 
 def test_sweep_is_a_function_and_a_package():
