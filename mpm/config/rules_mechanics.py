@@ -60,9 +60,9 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
 
 def mechanics_load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     """Of a load."""
-    if asked(experiment) and known(lambda: item.traction is not None and item.traction.nominal is None):
-        said = "implicit mechanics knows tractions by reference area only"
-        yield Finding(("loads", index, "traction"), said, ["nominal", EXPLICIT], on_key=True)
+    if asked(experiment) and known(lambda: item.traction is not None and item.traction.nominal is None and experiment.method.frame != "total"):
+        said = "implicit mechanics knows tractions by present area in the total frame only"
+        yield Finding(("loads", index, "traction"), said, ["nominal", "method.frame: total", EXPLICIT], on_key=True)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:

@@ -23,7 +23,7 @@ from mpm.implicit.deliver import deliver, drag_rate, loads
 from mpm.implicit.extrapolate import everything, extrapolate
 from mpm.implicit.free import free_tools, move_on
 from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
-from mpm.implicit.newton import Problem, solve
+from mpm.implicit.newton import MOST_MOVE, Problem, solve
 from mpm.implicit.nodes import Nodes, new_nodes
 from mpm.implicit.nozzle import carry, told_work
 from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
@@ -172,14 +172,15 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     if scene.references:
         how.lasting = how.lasting or lasting_nodes(scene.space, body, scene.references[0])
         nodes, pull, drag = begin_step(scene.space, scene.references[0], how.lasting, scene.gravity[-1], dt)
+        most = math.inf  # there is no cell to leave, and nothing to meet
     else:
         nodes = new_nodes(scene.space, scene.gradient, body, how.walls, scene.gravity[-1], mu)
-        pull, drag = np.zeros(nodes.v.shape), drag_rate(body.source, dt)
+        pull, drag, most = np.zeros(nodes.v.shape), drag_rate(body.source, dt), MOST_MOVE * scene.space.h
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
     free = free_tools(scene, dt)
-    problem = Problem(scene.space, body, nodes, pushed, free, dt, drag)
+    problem = Problem(scene.space, body, nodes, pushed, free, dt, drag, most)
     answer = solve(problem, dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
     if answer.u is None or not move_on(scene, free, dt):

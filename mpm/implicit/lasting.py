@@ -13,10 +13,13 @@ import numpy as np
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.implicit.nodes import Nodes, arrange, in_order
 from mpm.implicit.spans import Spans, new_spans
+from mpm.integrate.strain import REPORT
 from mpm.integrate.traction import share, within
 from mpm.state import PAD
-from mpm.total.reference import displacement_at, gradients_at
+from mpm.total.forces import press
+from mpm.total.reference import Skin, displacement_at, gradients_at
 from mpm.total.step import leaning, product, sampled
+from mpm.transfer import new_chunk
 
 ORDER = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # entries of a symmetric tensor
 
@@ -57,13 +60,15 @@ def home(space, nodes: Nodes) -> np.ndarray:
 
 
 def begin_step(space, reference, lasting: Nodes, gravity: np.ndarray, dt: float) -> tuple[Nodes, np.ndarray, float]:
-    """(nodes of a step of dt, forces of tractions at its end (A, D) [N], rate of drag in its middle [1/s])."""
+    """(nodes of a step of dt, forces of tractions at its end, on the areas of its start (A, D) [N], rate of drag in its middle [1/s])."""
     D, at = directions(space), home(space, lasting)
     H, _ = gradients_at(space, reference, reference.X)
     g = np.einsum("pke,ped->pkd", lasting.g, np.linalg.inv(np.eye(D) + H))
     push = reference.m[:, None] * gravity
     push[reference.near] *= 1.0 - reference.less
     v, t, pull = np.where(lasting.eq >= 0, reference.v[at, :D], 0.0), reference.t[0], np.zeros((len(at), D))
+    if isinstance(reference.skin, Skin):  # as areas are now: pairs of steps make it of order 2, and at rest nothing is behind
+        press(reference.skin, space, reference, new_chunk(D, reference.f, True, False), 0.0, np.zeros(REPORT))
     if len(reference.load):
         pull += share(reference.ramp, t + dt, 1.0) * reference.load[at, :D]
     return lasting._replace(g=g, v=v, push=push[at]), pull, reference.drag * within(reference.ramp, t + 0.5 * dt, 0.0)

@@ -43,6 +43,7 @@ class Problem:
     free: Free
     dt: float
     drag: float
+    most: float = math.inf  # that a particle may move in one iteration [m]
 
     def potential(self, u: np.ndarray, r: np.ndarray, matrix, depth: np.ndarray, want: bool) -> float:
         """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (mpm.implicit.matrix)."""
@@ -110,7 +111,7 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
         if step is None:
             return Answer(None, count, shifts, depth)
         full = problem.move(step)
-        share = min(1.0, MOST_MOVE * h / full) if full > 0 else 1.0
+        share = min(1.0, problem.most / full) if full > 0 else 1.0
         slope, small = float(np.sum(r[free] * step[free])), full < CLOSE * h
         for _ in range(HALVINGS):
             new = problem.potential(u + share * step, r, matrix, depth, False)

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import mpm
@@ -14,25 +13,22 @@ VERIFICATION = Path(__file__).parents[2] / "configs" / "verification"
 REST = {"time.end": "1e5", "output.every": "1e5", "method.mechanics": "implicit", "method.frame": "total"}
 
 
-@pytest.mark.slow
+@pytest.mark.plain
 def test_flow_is_that_of_a_stack_of_points():
-    """What flow leaves is kept on particles: mean height of a viscous column after 20 s, with its default steps."""
-    right = stack(mpm.load(COLUMN))
-    run = run_point(mpm.load(COLUMN, {"method.frame": "total", "output.every": "20"}))
-    assert run.outcome.ok and abs(run.finals["position_mean_x"] / right - 1) < 1e-4
+    """What flow leaves is kept on particles: mean height of a viscous column after 20 s, 3.1e-5 off with cells of 10 mm (updated frame 2.7e-4)."""
+    run = run_point(mpm.load(COLUMN, {"method.frame": "total", "output.every": "20", "grid.cell": "10 mm"}))
+    assert run.outcome.ok and abs(run.finals["position_mean_x"] / stack(mpm.load(COLUMN)) - 1) < 6e-5
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("nu", "locking", "most"), [(0.3, None, 2e-3), (0.499, {"fbar": {}}, 4e-3)])
+@pytest.mark.parametrize(("nu", "locking", "most"), [(0.3, None, (2.3e-4, 7.5e-5, 3.6e-5)), (0.499, {"fbar": {}}, (2e-3, 9e-5, 2.6e-5))])
 def test_a_heated_ring(nu, locking, most):
-    """Timoshenko's thick cylinder, heat and motion, at rest; nearly incompressible too."""
-    errors = []
-    for cell in (0.1, 0.05, 0.025):
+    """Timoshenko's thick cylinder, heat and motion, in one step to rest: the errors of explicit steps (1.14e-4, 3.7e-5, 1.8e-5), and nearly incompressible
+    1.0e-3, 4.5e-5, 1.3e-5."""
+    for cell, bound in zip((0.1, 0.05, 0.025), most, strict=True):
         changes = {"grid.cell": str(cell), "materials.steel.elastic.hencky.nu": str(nu), "method.locking": locking, "time.step": "1e5", "loads": []}
         run = run_point(mpm.load(VERIFICATION / "thermal_cylinder_total.yaml", REST | changes))
-        assert run.outcome.ok and run.facts["failed"] == 0
-        errors.append(run.finals["error_displacement"])
-    assert errors[1] < most and (np.log2(np.array(errors[:-1]) / errors[1:]) > 1.8).all(), errors
+        assert run.outcome.ok and run.facts["failed"] == 0 and run.finals["error_displacement"] < bound
 
 
 @pytest.mark.slow
@@ -41,4 +37,12 @@ def test_a_cantilever_that_bends_far():
     for cell, most in ((0.05, 1.3e-3), (0.025, 6e-4)):
         changes = {"grid.cell": str(cell), "loads": [], "time.end": "100", "output.every": "100"}
         run = run_point(mpm.load(VERIFICATION / "cantilever_far_total.yaml", REST | changes))
+        assert run.outcome.ok and run.finals["error_displacement"] < most
+
+
+@pytest.mark.slow
+def test_a_pipe_under_a_pressure_that_follows_its_bore():
+    """A quarter wider inside, at rest: the displacement of the exact solution, as by explicit steps (1.53e-3, 1.89e-4 at cells of 0.2, 0.1)."""
+    for cell, most in ((0.2, 2e-3), (0.1, 3e-4)):
+        run = run_point(mpm.load(VERIFICATION / "pressed_cylinder_total.yaml", {"method.mechanics": "implicit", "grid.cell": str(cell), "output.every": "40"}))
         assert run.outcome.ok and run.finals["error_displacement"] < most
