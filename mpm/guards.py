@@ -25,6 +25,7 @@ from mpm.integrate.fragments import STRETCH, torn
 from mpm.integrate.nozzle import Nozzle
 from mpm.integrate.state_check import span, unsound
 from mpm.integrate.surroundings import Surroundings
+from mpm.integrate.traction import GROWS, ROUGH
 from mpm.materials import Hencky
 from mpm.outcome import COMPLETED, ENERGY_GROWTH, FRACTURED, MAX_PRINCIPLE, OUTGROWN, Outcome, outcome
 from mpm.sources import acting
@@ -35,7 +36,14 @@ from mpm.warned import warning
 SLOPES, NOISE, NOTICEABLE, ROUNDING = 0.15, 0.5, 0.005, 1e-6  # of the range of the data; SLOPES: APIC and PIC, NOISE: increments kept
 MODERATE, AWAY, FLUSH = math.log(2.0), 1.0, 1e-9  # Hencky strain, elastic and plastic together; cells; of the domain
 GROWTH, NOISY = 0.05, 0.5  # of the largest energy so far; NOISY: affine FLIP keeps noise in velocities, and adds its slopes to it
+GROWN = 0.05  # of a traction by present area
 ROUNDED = 1e4  # round-offs: a strain below this is none, and its energy neither
+
+
+def grown(load) -> float:
+    """What the change of area and direction adds to tractions by present area, of their size."""
+    area = load.area
+    return float(np.abs(load.force - area.still).sum() / np.abs(area.press + area.pull).sum())
 
 
 class Guards:
@@ -67,6 +75,14 @@ class Guards:
             vars(one).update(seen)
         vars(self).update(found)
 
+    def follow(self, scene) -> "Guards":
+        """Those of another scene of the same particles, with what was seen so far."""
+        after = Guards(scene)
+        after.begun, after.most, after.warned = self.begun, self.most, self.warned
+        for one, seen in zip(after.data, self.data, strict=True):
+            vars(one).update({name: value for name, value in vars(seen).items() if name not in ("allowed", "lasting")})
+        return after
+
     def share(self, scene) -> None:
         """Bodies that pass heat to each other have one range of data."""
         if scene.meeting is None or not scene.meeting.warms:
@@ -97,6 +113,7 @@ class Guards:
         for name, data in zip(scene.names, self.data, strict=True):
             if data.over > NOTICEABLE:
                 self.warn(name, "temperature", f"temperatures leave the bounds of their data by up to {100 * data.over:.0f} % of the range")
+        self.tractions(scene)
         now = {name: series[name][-1] for name in ("energy_kinetic", "energy_elastic", "energy_total")}
         self.most = max(self.most, now["energy_kinetic"] + now["energy_elastic"])
         if math.isnan(self.begun):
@@ -109,6 +126,15 @@ class Guards:
             said = outgrown(scene, series)
             return outcome(OUTGROWN, time=clock.time * scene.scale, step=clock.steps, detail=f"({said})") if said else outcome(COMPLETED)
         return self.gaps(scene, clock)
+
+    def tractions(self, scene) -> None:
+        """Tractions that particles do not bear by the quadrature of their stress (mpm.scene.faded)."""
+        for name, body in zip(scene.names, scene.bodies, strict=True):
+            loads = [one for one in acting(body.source) if isinstance(one, Load)]
+            if any(one.left == ROUGH for one in loads):
+                self.warn(name, "traction", "a face that is loaded is neither flat nor all of a round one, and stress beneath it is off by as much as the load")
+            elif (more := max((grown(one) for one in loads if one.left == GROWS), default=0.0)) > GROWN:
+                self.warn(name, "traction", f"the load on a face grew or turned by {100 * more:.0f} % of itself, and stress beneath it is off by as much")
 
     def gaps(self, scene, clock) -> Outcome:
         """A body in more pieces than it began with: spacing over h. Over 2 h no force is left."""

@@ -27,7 +27,7 @@ KINDS = {
         "no step of implicit mechanics finds a balance of forces",
         "the load may be more than a material without viscosity bears: a smaller load, `eta` in flow, or `method.mechanics: explicit` to see it collapse",
     ),
-    OUTGROWN: ("outgrown", "a body outgrew the total frame", "`method.frame: updated`, or auto, which runs it again there"),
+    OUTGROWN: ("outgrown", "a body outgrew the total frame", "`method.frame: updated`, or auto, which goes over to it"),
     BUDGET: ("budget", "stopped before the end", "run again to go on, or give it more time"),
 }
 

@@ -83,7 +83,7 @@ def refuse(experiment) -> None:
 
 
 def in_a_frame(experiment, *given, keeper=None) -> Run:
-    """Run `method.frame: auto` (mpm.scene.framing): in the total frame, and again in the updated one where a body outgrows it."""
+    """Run `method.frame: auto` (mpm.scene.framing): in the total frame; where a body outgrows it on in the updated one, or again where it cannot go on."""
     experiment = mechanics_settled(experiment)
     frame, why = choice(experiment)
     if frame == "total":
@@ -93,7 +93,8 @@ def in_a_frame(experiment, *given, keeper=None) -> Run:
         except SceneError as error:  # what only the scene shows
             ended = error.message
         if not ended:
-            run.facts["frame"] = {"name": "total", "why": why}
+            over = run.facts.pop("over", "")
+            run.facts["frame"] = {"name": "updated" if over else "total", "why": over or why}
             return run
         why = ended
     run = run_named(named(experiment, "updated"), *given, keeper=keeper and Turn(keeper, 1))
@@ -123,6 +124,10 @@ def run_named(experiment, beat=None, compare: bool = True, threads: int = 1, kee
         refuse_endless(experiment, (scene.step or present_limits(scene, Clock(scene)).step() * scene.safety) * scene.scale)
         scene.watch.exact = scene.watch.exact if compare else None
         scene.threads, scene.moderate, scene.watch.shown = threads, moderate, shown(experiment)
+        if moderate < np.inf:
+            from mpm.scene.over import go_over
+
+            scene.over = functools.partial(go_over, named(experiment, "updated"), exact)
         run = physical(simulate(scene, beat, keeper), experiment)
         shared = scene.order.shared
     else:

@@ -72,6 +72,7 @@ class Scene:
     tears: bool = False  # whether a gap of two cells ends the run (mpm.guards)
     threads: int = 1  # that share the work of a large scene
     moderate: float = math.inf  # the largest strain in the total frame, beyond which a run ends as outgrown (mpm.guards)
+    over: Any = None  # (scene, time) -> the same in the updated frame or None, where a run that is outgrown goes over to it (mpm.scene.over)
     references: tuple = ()  # mpm.total.Reference by body, in the total frame; none in the updated one
     implicit: Any = None  # mpm.implicit.drive.Implicit, or None: explicit mechanics
     order: Order = field(init=False)  # of the particles, while it runs
@@ -105,6 +106,10 @@ class Clock:
         self.stepped = self.heated = None  # (step, its limit [s], the limit's name) of the last mechanical step and of the last heat sub-step
         self.output, self.start, self.part, self.parts = 1, 0.0, 0, 0  # next output or snapshot, start of its interval, heat step, heat steps (0: none yet)
         self.reports = np.zeros((len(scene.bodies), REPORT))
+        self.look(scene)
+
+    def look(self, scene: Scene) -> None:
+        """Speeds, rates and changes of volume that the first step is to know of."""
         self.reset()
         for report, body in zip(self.reports, scene.bodies, strict=True):
             report[SPEED] = float(np.max(np.sum(body.particles.v.astype(float) ** 2, axis=1)))
@@ -139,6 +144,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     work = None if scene.references else work_arrays(scene)
     result, before = outcome(COMPLETED), keeper.found if keeper is not None else None
     if before is not None:
+        if "over" in before["clock"]["told"]:
+            scene, guards, work = go_on(scene.over(scene, 0.0), clock, recorder, guards)
         clock.recall(before["clock"])
         recorder.recall(before["recorder"])
         guards.recall(before["guards"])
@@ -171,6 +178,10 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         with in_sync(scene, clock, work):
             (recorder.record if told else recorder.frame)(scene, clock)
             result = guards.frame(scene, clock, recorder.series) if told else result
+        if result.kind == "outgrown" and scene.over is not None and (after := scene.over(scene, clock.time)) is not None:
+            clock.told["over"] = f"from t = {clock.time * scene.scale:.4g} s on, {result.message}"
+            scene, guards, work = go_on(after, clock, recorder, guards)
+            result = outcome(COMPLETED)
         if not result.ok:
             recorder.drop()
             break
@@ -178,7 +189,16 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
     show_all(scene)
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
     run.facts |= {"warnings": guards.warned} if guards.warned else {}
+    run.facts |= {"over": clock.told["over"]} if "over" in clock.told else {}
     return run
+
+
+def go_on(scene: Scene, clock: Clock, recorder, guards: Guards) -> tuple:
+    """(scene, guards, work) of a run that goes on in another frame, its counts and records as they are."""
+    clock.look(scene)
+    clock.first_step = clock.stepped = clock.heated = None
+    recorder.scene = scene
+    return scene, guards.follow(scene), work_arrays(scene)
 
 
 def interval(scene: Scene, clock: Clock, recorder, guards: Guards, work, end: float, look) -> Outcome:

@@ -86,7 +86,6 @@ class Thermal(NamedTuple):
 
 class Surface(NamedTuple):
     """Pieces of a body's surface that exchange heat, each at an offset from its particle (docs/physics.md 11).
-
     What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
     """
 
@@ -222,6 +221,7 @@ class Load(NamedTuple):
     rate: float  # drag: -rate m v [1/s]
     scale: float  # of chunk.S: 1, or 1/(sum w d^2) with the MLS gradient [1, 1/m2]
     area: Any  # mpm.integrate.traction: Nominal or Present
+    left: float = 0.0  # at pieces of surface: mpm.integrate.traction BORNE, GROWS or ROUGH
 
 
 class NoAverage(NamedTuple):

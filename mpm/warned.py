@@ -21,6 +21,7 @@ KINDS = {
     "near": "let them meet for heat to pass, or take cells smaller than the gap",
     "late": "a longer `time.end`, or an earlier `from`",
     "ring": "shorter heat steps (`method.heat_step`), a larger `time.scale`, or `method.mechanics: implicit`",
+    "traction": "`method.frame: total`, which bears tractions on any surface at any strain; loads and displacement as a whole are right",
 }
 
 

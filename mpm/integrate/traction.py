@@ -1,16 +1,16 @@
 """Tractions and drag on a body: forces beside the stress, taken from the config's `loads`.
 
-f_i += share(t) sum_p (f_p w_ip + D_p F_p^T grad w_ip),  f_p and D_p of each particle from mpm.scene.traction: the force at its pieces of surface and its
-moment, or, on flat faces, the stress that the traction asks for, faded out inside. A nominal T is force by reference area and keeps its direction.
-Tractions by present area (Present) add, with G = J F^-T of the particle and N the reference normal of its pieces of surface, by the forces f_p at these,
+f_i += share(t) sum_p (f_p w_ip + D_p F_p^T grad w_ip),  f_p and D_p of each particle from mpm.scene.faded: on flat and round faces the stress that the
+traction asks for, faded out inside, else the force at its pieces of surface and its moment. A nominal T is force by reference area and keeps its direction.
+Tractions by present area (Present) add, with G = J F^-T of the particle and N the reference normal of its pieces of surface,
     pressure  (G - 1) f_p, (G - 1) D_p        cauchy  (|G N| - 1) f_p, (|G N| - 1) D_p
-so at small strain they meet the stress of particles as nominal ones do, and at any strain they are force by present area.
+by the forces f_p at these, or, of a pressure around which no free surface lies, by those of the faded stress: particles then bear it at any strain.
 drag  f_p = -rate m_p v_p;   share(t) = s^2 (3 - 2 s), s = t/ramp up to 1: without a kick at either end. Of a load within a time, from its beginning on
 and nothing after its end: the impulse at a jump, part of which acts before it, takes that part of the share before (momentum is exact)
 A static answer is the end of a ramp of several periods of the slowest mode omega, with a drag rate of about 2 omega.
 Good values  displacement of a pulled bar to 1e-4 with 16 cells, its strain to 0.3 % (tests/integrate/test_traction.py).
-Fails when   the face is not flat: then the quadrature of a cell that is cut balances the load as a whole, not point by point, and the stress of particles in
-             the last cell is off by as much as itself. On a flat face it is right to 1e-3 (docs/frames.md).
+Fails when   the face is neither flat nor all of a round one, or a load on a flat one beside free faces grows with its area: then the quadrature of a cell that
+             is cut balances that as a whole, not point by point, and the stress of particles in the last cell is off by as much. The run warns (`traction`).
 A body without loads compiles none of this.
 """
 
@@ -25,6 +25,8 @@ from mpm.integrate.deformation import carry_one, cofactor
 from mpm.integrate.strain import WORKED
 from mpm.jit import kernel, role
 from mpm.state import PER_PARTICLE, Load, Ramp, Within
+
+BORNE, GROWS, ROUGH = 0.0, 1.0, 2.0  # of a load, at pieces of surface: nothing; what a change of area adds; some of it, or all (mpm.scene.faded)
 
 
 class Nominal(NamedTuple):
@@ -41,6 +43,7 @@ class Present(NamedTuple):
     pull: np.ndarray  # (N, D) of Cauchy tractions [N]
     pull_moment: np.ndarray  # (N, D, D)
     normal: np.ndarray  # (N, D) unit normal of the pieces that are pulled, a mean; 0 without
+    hoop: np.ndarray  # (N,) radial force of a pressure on the hoop, which grows with the area across it [N]; 0 unless axisymmetric
 
 
 PER_PARTICLE[Present] = Present._fields
@@ -137,6 +140,7 @@ def turn_present(area, load, i, J, D):
             load.force[i, c] += G * area.press[i, k]
             for d in range(D):
                 load.dipole[i, c, d] += G * area.press_moment[i, k, d]
+    load.force[i, 0] += (volume - 1.0) * area.hoop[i]
 
 
 @kernel(inline=True)

@@ -11,6 +11,7 @@ Further files
     course             what a config lets change over time beside heat
     cut_boundary       plane regions on a grid
     exchange           surfaces of a config
+    faded              tractions as the stress that they ask for, faded out inside
     fracture_surface   faces between the particle cells of a body that may tear
     framing            which frame `method.frame: auto` takes, and why
     groups             the dimensionless groups of a scene

@@ -95,11 +95,11 @@ def sample(experiment, name: str, most: float = math.inf):
     return cut, edges, outline_of(outline, cut, edges, radial)
 
 
-def moving_body(experiment, name: str, zero: float, space, meets: bool, most: float = math.inf):
+def moving_body(experiment, name: str, zero: float, space, meets: bool, sampled):
     """(Body, its Surroundings or None, its Seams or None, its outline): particles and laws of one body."""
     config = experiment.bodies[name]
     material = experiment.materials[config.material]
-    cut, edges, outline = (sample if config.inflow is None else sample_column)(experiment, name, most)
+    cut, edges, outline = sampled
     faces, cut = cut, cornered(cut, experiment.grid.cell) if meets else cut
     cut = cut if config.inflow is None else by_owner(cut)
     dtype = np.dtype(experiment.method.precision)
@@ -165,8 +165,11 @@ def heat_method(experiment) -> HeatMethod:
     return HeatMethod(kind, getattr(heat, "order", 1), getattr(heat, "tolerance", HeatMethod.tolerance))
 
 
-def build(experiment, exact=None, most: float = math.inf) -> Scene:
-    """The scene of one point, its bodies of at most about `most` particles each: fewer to look at, not to run. SceneError where no method can run it."""
+def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
+    """The scene of one point, its bodies of at most about `most` particles each: fewer to look at, not to run. SceneError where no method can run it.
+
+    points: the cut cells of each body by its name, where they are not those of the grid (mpm.scene.over).
+    """
     names = tuple(experiment.bodies)
     rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
     if rigid:
@@ -182,7 +185,9 @@ def build(experiment, exact=None, most: float = math.inf) -> Scene:
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
         meets = plan_meetings(experiment, SIDES[experiment.grid.dimension])
-        made = (moving_body(experiment, name, zero, space, met, most) for name, met in zip(names, meets.any, strict=True))
+        found = ((sample if body.inflow is None else sample_column)(experiment, name, most) for name, body in experiment.bodies.items())
+        sampled = found if points is None else ((points[name], None, None) for name in names)
+        made = (moving_body(experiment, name, zero, space, met, one) for name, met, one in zip(names, meets.any, sampled, strict=True))
         bodies, surroundings, seams, outlines = zip(*made, strict=True)
         walls = meets.walls.min(axis=0)
         refuse_idle(experiment, seams)

@@ -1,9 +1,9 @@
 """`method.frame: auto`: total where a body keeps its neighbours, updated where it flows, meets or tears.
 
 choice     before a run, from the config alone: what the total frame refuses, or whether the body may flow (upper estimates of stress against yield)
-the run    begins in the total frame. Where the body outgrows it (mpm.guards: MODERATE strain, a wall on which it did not lie) or the run ends early, the point
-           is run again from its start in the updated frame: nothing is carried over, so its result is bit for bit that of `method.frame: updated`
-Fails when: a body that lies on a wall would lift off it: the total frame holds it there (docs/frames.md). Time lost to a run that is outgrown: all of it
+the run    begins in the total frame. Where the body outgrows it (mpm.guards: MODERATE strain, a wall on which it did not lie) the run goes over to the updated
+           frame and on (mpm.scene.over); where it cannot, or ends early, the point is run again from its start there
+Fails when: a body that lies on a wall would lift off it: the total frame holds it there (docs/frames.md).
 """
 
 from typing import Any

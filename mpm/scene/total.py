@@ -12,13 +12,14 @@ from mpm.lanes import aligned
 from mpm.materials import NoFlow, value
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.exchange import exchanging_surface
+from mpm.scene.faded import by_area
 from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import pulling, wall_kind
 from mpm.scene.quadrature import knots, points
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import shape
 from mpm.scene.sources import sourced
-from mpm.scene.traction import by_area, one_course
+from mpm.scene.traction import one_course
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
 from mpm.total.heat import NoWarmth, Warmth
 from mpm.total.reference import Reference, Skin, Still, new_nodes
@@ -44,11 +45,10 @@ def total_bodies(experiment, zero: float, space) -> tuple[tuple, tuple, tuple]:
     return tuple(zip(*(total_body(experiment, name, zero, space) for name in experiment.bodies), strict=True))
 
 
-def total_body(experiment, name: str, zero: float, space):
-    """(body, reference, surroundings) of one body."""
-    config, grid, method = experiment.bodies[name], experiment.grid, experiment.method
-    material, dtype, D = experiment.materials[config.material], np.dtype(method.precision), grid.directions
-    outline = shape(config.shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
+def sampled_points(experiment, name: str):
+    """(x (N, D), V (N,), Surface, lower (D,), upper (D,)): the points of a body's reference shape and its bounds, in the order in which they are kept."""
+    grid, method = experiment.grid, experiment.method
+    outline = shape(experiment.bodies[name].shape, grid.dimension).moved(np.array(method.offset) * grid.cell)
     lower, upper = outline.bounds()
     radial = grid.dimension == "axisymmetric"
     if radial:
@@ -59,7 +59,14 @@ def total_body(experiment, name: str, zero: float, space):
             raise SceneError(("bodies", name, "shape"), said)
     x, V, surface = points(outline, knots(lower, upper, grid.cell, grid.basis), method.particles, radial)
     order = np.lexsort(np.floor(x / grid.cell + 0.5 + 1e-9).T[::-1])  # points that share nodes follow one another
-    x, V = x[order], V[order]
+    return x[order], V[order], surface, lower, upper
+
+
+def total_body(experiment, name: str, zero: float, space):
+    """(body, reference, surroundings) of one body."""
+    config, grid, method = experiment.bodies[name], experiment.grid, experiment.method
+    material, dtype, D = experiment.materials[config.material], np.dtype(method.precision), grid.directions
+    x, V, surface, lower, upper = sampled_points(experiment, name)
     elastic, flow = mechanical_laws(material)
     velocity, slope = np.zeros((len(x), D)), np.zeros((len(x), D, D))
     if config.velocity is not None:
