@@ -56,6 +56,17 @@ def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
     assert cuts == 6 and not wrong
 
 
+def test_a_run_that_goes_over_to_another_frame():
+    """`method.frame: auto`: cut before and after."""
+    experiment = mpm.load({
+        "grid": {"dimension": 1, "size": [2.0], "cell": 0.25}, "time": {"end": 1.0}, "method": {"frame": "auto"}, "output": {"every": 0.1},
+        "bodies": {"bar": {"shape": {"box": {"lower": [0.5], "upper": [1.5]}}, "material": "m", "velocity": [0.9]}},
+        "materials": {"m": {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}},
+    })  # fmt: skip
+    cuts, wrong = cut(experiment, 20, np.random.default_rng(6))
+    assert cuts >= 8 and not wrong
+
+
 @pytest.mark.parametrize("rigid, heat", [({"implicit": {}}, None), ({"implicit": {}}, HEAT), ({"explicit": {}}, HEAT)], ids=["linear", "newton", "chebyshev"])
 def test_bodies_that_do_not_move(rigid, heat):
     cuts, wrong = cut(slab(rigid, heat), 6, np.random.default_rng(2))
