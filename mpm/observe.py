@@ -134,7 +134,7 @@ class Recorder:
         wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
         met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag, clock.time) if scene.meeting is not None else ()
         for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *self.of_bodies(scene), *wrong.items(), *met):
-            self.series.setdefault(name, []).append(float(value))
+            self.series.setdefault(name, [0.0] * (len(self.times) - 1)).append(float(value))  # what meets something late met nothing before
         self.frame(scene, clock)
 
     def frame(self, scene, clock) -> None:

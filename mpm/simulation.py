@@ -13,7 +13,7 @@ import numpy as np
 
 from mpm.contact.block import advance_block, clear, work_arrays
 from mpm.contact.insync import in_sync
-from mpm.guards import Guards, explain
+from mpm.guards import Guards, explain, outgrown
 from mpm.integrate import enthalpy_steps  # noqa: F401 - registers the laws of specific heat that follow temperature
 from mpm.integrate.sorting import Order
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPORT, SOURCED, SPEED, STEP, SWELL, SWELLED, WORKED
@@ -179,7 +179,7 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
             (recorder.record if told else recorder.frame)(scene, clock)
             result = guards.frame(scene, clock, recorder.series) if told else result
         if result.kind == "outgrown" and scene.over is not None and (after := scene.over(scene, clock.time)) is not None:
-            clock.told["over"] = f"from t = {clock.time * scene.scale:.4g} s on, {result.message}"
+            clock.told["over"] = f"total until t = {clock.time * scene.scale:.4g} s: {outgrown(scene, recorder.series)}"
             scene, guards, work = go_on(after, clock, recorder, guards)
             result = outcome(COMPLETED)
         if not result.ok:
