@@ -23,6 +23,7 @@ Further files
     mesh               closed triangle meshes as shapes
     menus              what the kinds of a menu of the config are to solvers
     outline            the outline of a sampled body
+    over               from the total frame to the updated one within a run
     point              material points from validated experiments, and their Runs
     refusal            the error of a config that is valid but that no method here can run, and its place in the config
     rigid              A rigid scene from a validated experiment, and its Run
