@@ -143,6 +143,14 @@ def turn_present(area, load, i, J, D):
     load.force[i, 0] += (volume - 1.0) * area.hoop[i]
 
 
+@kernel
+def turn_all(load, J, D):
+    """Of every particle that is loaded."""
+    for i in range(J.shape[0]):
+        if load.loaded[i]:
+            turn(load.area, load, i, J[i], D)
+
+
 @kernel(inline=True)
 def power(source, m, i, chunk, p, D):
     """What loads work on particle i in the step that is over [W]: at the velocity and the gradient that it gathered."""

@@ -9,7 +9,7 @@ Fails when   a body has passed a wall already: then there is nothing to go on fr
 import numpy as np
 
 from mpm.boundary import extents
-from mpm.integrate.traction import turn
+from mpm.integrate.traction import turn_all
 from mpm.memory import arrays
 from mpm.scene.build import build
 from mpm.scene.contents import CutCells
@@ -61,5 +61,4 @@ def carry(space, old, new, reference, time: float) -> None:
             one.t[:] = time
         if isinstance(one, Load):
             one.F[:] = F
-            for i in np.flatnonzero(one.loaded):
-                turn(one.area, one, i, new.particles.J[i], D)
+            turn_all(one, new.particles.J, D)
