@@ -124,7 +124,7 @@ def run_named(experiment, beat=None, compare: bool = True, threads: int = 1, kee
         refuse_endless(experiment, (scene.step or present_limits(scene, Clock(scene)).step() * scene.safety) * scene.scale)
         scene.watch.exact = scene.watch.exact if compare else None
         scene.threads, scene.moderate, scene.watch.shown = threads, moderate, shown(experiment)
-        if moderate < np.inf:
+        if moderate < np.inf and scene.implicit is None:
             from mpm.scene.over import go_over
 
             scene.over = functools.partial(go_over, named(experiment, "updated"), exact)

@@ -28,7 +28,7 @@ def go_over(experiment, exact, before, time: float):
         size = (np.array(extents(space)[: body.particles.x.shape[1]]) - 1 - 2 * PAD) * h
         if np.any(body.particles.x < 0) or np.any(body.particles.x > size):
             return None
-    cuts = {name: as_cells(experiment, name, body) for name, body in zip(before.names, before.bodies, strict=True)}
+    cuts = {name: as_cells(experiment, name) for name in before.names}
     after = build(experiment, exact, points=cuts)
     for old, new, reference, around in zip(before.bodies, after.bodies, before.references, after.surroundings, strict=True):
         carry(space, old, new, reference, time)
@@ -38,7 +38,7 @@ def go_over(experiment, exact, before, time: float):
     return after
 
 
-def as_cells(experiment, name: str, body) -> CutCells:
+def as_cells(experiment, name: str) -> CutCells:
     """The points of a body in the total frame as cut cells, with its points of surface as pieces."""
     from scipy.spatial import cKDTree
 
