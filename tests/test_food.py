@@ -74,7 +74,7 @@ def test_a_lower_oven_makes_a_flatter_cake():
 def test_a_raw_pancake_spreads_to_where_its_yield_stress_holds_it():
     """Cold: the radius of N. Roussel, P. Coussot (J. Rheol. 49 (2005) 705) to 13 %, the height in the middle to 8 %.
 
-    Theirs is a thin film, and this is a fifth of its radius high. Poured it comes to 12.4 %; the cylinder that was let go before, with the inertia of its collapse, came to 11 %."""
+    Theirs is a thin film, and this is a fifth of its radius high. Poured it comes to 12.4 %; a cylinder of the same volume that was let go came to 11 %."""
     cold = {f"surfaces.{k}.convection.beta": "0" for k in range(4)} | {"walls.bottom.contact.heat.beta": "0", "flip": "60", "end": "120"}
     found = run("pancake", RAW | cold)
     tau, V = 14 / np.sqrt(3), 60e-6
