@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm.contact import narrow
 from mpm.contact.block import advance_block, clear, work_arrays
 from mpm.contact.insync import in_sync
 from mpm.guards import Guards, explain, outgrown
@@ -188,7 +189,8 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         clock.output += 1
     show_all(scene)
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
-    run.facts |= {"warnings": guards.warned} if guards.warned else {}
+    warned = [*guards.warned, *(narrow.warned(scene.meeting) if scene.meeting is not None and scene.implicit is None else ())]
+    run.facts |= {"warnings": warned} if warned else {}
     run.facts |= {"over": clock.told["over"]} if "over" in clock.told else {}
     return run
 

@@ -11,8 +11,8 @@ meeting   what of it outlasts a step, and when it is needed
 
 One velocity field a body, or a group of welded ones. No stiffness, no shorter step, no gap, no tension.
 May use   mpm.integrate and below                          May not  see configs
-Fails when   a contact is narrower than a cell (force right, pressure not); a flow tears new surface, which has no pieces: against walls particles then stand
-             for it, between bodies nothing does; a body folds on to itself; sheets are thinner than a cell
+Fails when   a contact is narrower than three cells (narrow.py: forces balance, pressure means nothing); a flow tears new surface, which has no pieces:
+             against walls particles then stand for it, between bodies nothing does; a body folds on to itself; sheets are thinner than a cell
 
 Further files
     block      the arrays that a run works on, and one block of its steps by whichever kernel it needs
@@ -27,4 +27,5 @@ Further files
     texture    what a press that bites twice says of a body
     triangles  signed distance of a closed triangle mesh
     links      where heat passes between bodies
+    narrow     how many cells a contact is wide, for a warning
 """

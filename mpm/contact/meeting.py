@@ -7,7 +7,7 @@ import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.blocks import new_blocks
-from mpm.contact import books
+from mpm.contact import books, narrow
 from mpm.contact.conduct import FIELDS, conduct_together
 from mpm.contact.drive import Drive
 from mpm.contact.found import BODY
@@ -47,6 +47,7 @@ class Meeting:
     drive: Drive | None = None
     touching: Touching = field(init=False)
     passed: np.ndarray = field(init=False)  # (B, B) heat that a body took in from each other since the start [J]
+    hardest: np.ndarray = field(init=False)  # (B, K, 2) largest force of each body on what it meets, and how many cells it touches there (narrow.py)
     passing: np.ndarray = field(init=False)  # (B, B) whether heat ever passes between two bodies; links may be 0 for a while (mpm.contact.course)
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
@@ -67,7 +68,7 @@ class Meeting:
         self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
                                  np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
                                  np.array([P // 4 + 64]))  # fmt: skip
-        self.passed, self.passing = np.zeros((B, B)), self.links > 0
+        self.passed, self.passing, self.hardest = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2))
 
     @property
     def tool_names(self) -> tuple[str, ...]:
@@ -75,7 +76,8 @@ class Meeting:
 
     def memory(self) -> dict:
         """What a run that goes on needs (mpm.memory)."""
-        return {name: getattr(self.touching, name) for name in KEPT} | {"left": self.left, "told": self.told, "passed": self.passed} | self.free()
+        own = {name: getattr(self, name) for name in ("left", "told", "passed", "hardest")}
+        return {name: getattr(self.touching, name) for name in KEPT} | own | self.free()
 
     def free(self) -> dict:
         """What forces have done to tools."""
@@ -86,7 +88,7 @@ class Meeting:
         self.left, self.told = found["left"], found["told"]
         for name in KEPT:
             getattr(self.touching, name)[...] = found[name]
-        self.passed[...] = found["passed"]
+        self.passed[...], self.hardest[...] = found["passed"], found["hardest"]
         for name, array in self.free().items():
             array[...] = found[name]
 
@@ -110,6 +112,7 @@ class Meeting:
     def series(self, axes: tuple[str, ...], now: float, time: float):
         """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted, at positions of `time` [s]."""
         since, self.told = now - self.told, now
+        narrow.look(self, since)
         return books.series(self, axes, since, time)
 
     def texture(self, tool: str, axes: tuple[str, ...], series) -> dict[str, float]:
