@@ -40,6 +40,7 @@ particles a cell `hencky_bar` goes from 1.3e-3 and 2.2e-3 at 32 cells to 1.5e-3 
 5.2e-4, order 1.5 or better from 8 cells on (`error_velocity`, `error_stress` of `mpm run configs/verification/hencky_bar.yaml --set grid.cell=0.015625 --set
 method.particles=8`). Cubic splines have no such kink: `hencky_bar_cubic` is of order 2 in all three.
 How heat is exchanged at a free surface, three ways measured: [surfaces.md](surfaces.md), made by `python -m mpm.benchmarks.surfaces`.
+What bodies that meet are held to, most of it no field over a whole run: [contact.md](contact.md).
 
 | config | method | refined | error | at three resolutions | order | declared | velocity | stress | time, s |
 |---|---|---|---|---|---|---|---|---|---|

@@ -62,13 +62,15 @@ def globe(level: int, radius: float, centre) -> dict:
 
 @pytest.mark.slow
 def test_a_mesh_of_a_ball_presses_as_the_ball(plain):
-    """2048 triangles: the force within 3 % of the ball's, at a radius of two cells; what is left is that its triangles lie up to 0.3 % of the radius inside."""
+    """What the tool gives in all, of order 2 as the distance of 512 and 2048 triangles from the sphere is. (In one interval it is 2 %: pieces land later.)"""
     ball = copy.deepcopy(PRESSED)
-    where = {"centre": [0.4, 0.35, 0.751], "radius": 0.5}
+    where = {"centre": [0.4, 0.35, 0.76], "radius": 0.5}
     ball["tools"] = {"press": {"shape": {"ball": where}, "motion": {"velocity": [0, 0, -0.4]}}}
-    mesh = copy.deepcopy(ball)
-    mesh["tools"]["press"]["shape"] = globe(4, where["radius"], where["centre"])
-    one, other = plain([ball, mesh])
-    assert one["kind"] == other["kind"] == "completed"
-    force, same = (run["series"]["force_press_z"] for run in (one, other))
-    assert abs(force[-1]) > 0.01 and same[-1] == pytest.approx(force[-1], rel=0.03)
+    meshes = [copy.deepcopy(ball) for _ in range(2)]
+    for level, mesh in zip((3, 4), meshes, strict=True):
+        mesh["tools"]["press"]["shape"] = globe(level, where["radius"], where["centre"])
+    runs = plain([ball, *meshes])
+    assert all(run["kind"] == "completed" for run in runs)
+    given, *same = (np.sum(run["series"]["force_press_z"]) for run in runs)
+    coarse, fine = (abs(one / given - 1) for one in same)
+    assert given < -0.1 and coarse < 0.03 and fine < min(0.01, coarse / 3)

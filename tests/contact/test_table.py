@@ -1,13 +1,22 @@
-"""Slow ones of the table: bars at rest and dropped, in plain Python."""
+"""Slow ones of the table: what has an exact answer and is in no other file here. Small scenes in plain Python, long ones compiled."""
 
 import math
 
 import numpy as np
 import pytest
+from contact_scenes import DIMENSIONS, bars, conducting, dropped, floor, pressed, up
 from scipy.optimize import brentq
+
+import mpm
 
 pytestmark = pytest.mark.slow
 WEIGHT = 0.09  # rho g H/(lam + 2 mu)
+
+
+def compiled(config):
+    tree = mpm.run(mpm.load(config))
+    assert int(tree.ds.status) == 0, str(tree.ds.error.values)
+    return {name: values.values for name, values in tree["series"].ds.items()} | {"time": tree["series"].time.values, "steps": float(tree.ds.steps)}
 
 
 def standing(gap, n=16):
@@ -30,3 +39,81 @@ def test_a_bar_under_its_weight(plain, gap):
     assert run["kind"] == "completed" and run["series"]["velocity_max"][-1] < 1e-6
     assert run["series"]["position_max_x"][-1] == pytest.approx(F.mean(), abs=0.005 * (1 - F.mean()))
     assert math.log(run["series"]["J_min"][-1]) == pytest.approx(math.log(F[0]), rel=0.05)
+
+
+@pytest.mark.parametrize(("F", "n", "offset"), [(0.7, 8, 0.3), (0.7, 16, 0.0), (0.5, 8, 0.0), (0.5, 16, 0.3)])
+def test_a_bar_that_is_pressed_far(plain, F, n, offset):
+    """P = E ln F/F to 0.5 %, the strain of every particle to 5 %."""
+    (run,) = plain([pressed(1, offset, F, n)])
+    s = run["series"]
+    assert run["kind"] == "completed" and -s["force_press_x"][-1] == pytest.approx(-math.log(F) / F, rel=0.005)
+    assert np.log([s["J_min"][-1], s["J_max"][-1]]) / math.log(F) == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize("dimension", DIMENSIONS[:3])
+def test_a_block_at_rest_stays(dimension):
+    """After 1e5 steps and more: not a thousandth of a cell from where it was after a tenth of them, the force its weight to 1e-6."""
+    s = compiled(dropped(dimension, 0.0, 0.3, end=330.0))
+    low, force = s[f"position_min_{up(dimension)}"], s[f"force_{floor(dimension)}_{up(dimension)}"]
+    assert s["steps"] > 1e5 and np.abs(low[2:] - low[2]).max() < 1e-3 * 0.125
+    assert force[2:] == pytest.approx(s["mass_total"][0], rel=1e-6)
+
+
+def test_a_bar_that_hits_a_wall(plain):
+    """2 L/c in touch to 1 %, and 0.95 of its speed after it, at 32 cells."""
+    scene = standing(0.0, 32)
+    scene |= {"gravity": [0.0], "loads": [], "time": {"end": 2.6}, "output": {"every": 0.004}}
+    scene["bodies"]["bar"]["velocity"] = [-0.02]
+    (run,) = plain([scene])
+    force, p = run["series"]["force_left_x"], run["series"]["momentum_x"]
+    assert run["kind"] == "completed" and run["times"][np.flatnonzero(force)[-1]] == pytest.approx(2.0, rel=0.01)
+    assert 0.95 < -p[-1] / p[0] < 1.0
+
+
+def test_two_equal_bars_of_32_cells(plain):
+    """The impulse between them is 0.97 of the first's and more."""
+    (run,) = plain([bars(1, n=32)])
+    assert run["kind"] == "completed" and 0.97 < -np.sum(run["series"]["force_a_b_x"]) * 0.1 / run["series"]["momentum_x"][0] < 1.0
+
+
+def test_effusivities_at_32_cells(plain):
+    """1:6: the face is within 1 K of (e1 400 + e2 300)/(e1 + e2)."""
+    scene = conducting(1, 32, end=0.01)
+    scene["materials"]["other"] = scene["materials"]["m"] | {"heat": {"fourier": {"kappa": 6.0, "alpha": 6.0}}}
+    scene["bodies"]["cold"]["material"] = "other"
+    scene["output"]["probes"] = {"face": [0.5]}
+    (run,) = plain([scene])
+    assert run["kind"] == "completed" and run["series"]["temperature_face"][-1] == pytest.approx(400 - 100 * 6 / 7, abs=1.0)
+
+
+def test_a_block_slides_down_another():
+    """Base and block of one softness at 25 degrees, mu = 0.2: g (sin - mu cos) to 0.5 %."""
+    s, c, mu, h = np.sin(np.radians(25)), np.cos(np.radians(25)), 0.2, 0.125
+    scene = dropped(2, 0.0, drag=0.0, E=400.0, end=0.8, gravity=[s, -c], walls={"bottom": "stick"})
+    box = lambda low, high, base, top: {"shape": {"box": {"lower": [low * h, base * h], "upper": [high * h, top * h]}}, "material": "m"}  # noqa: E731
+    scene |= {"bodies": {"base": box(1, 12, 0, 2), "block": box(2.3, 4.3, 2, 4)}, "contacts": [{"between": ["base", "block"], "friction": mu}]}
+    scene["grid"]["size"], scene["output"] = [1.75, 1.0], {"every": 0.04, "observables": ["momentum.x.block", "momentum.y.block", "mass.total.block"]}
+    found = compiled(scene)
+    down = (found["momentum_x_block"] + mu * found["momentum_y_block"]) / found["mass_total_block"][0]
+    assert down[10:] / found["time"][10:] == pytest.approx(s - mu * c, rel=0.005)
+
+
+@pytest.mark.parametrize(("mu", "rolls"), [(0.14, True), (0.11, False)])
+def test_from_which_friction_a_cylinder_slips(mu, rolls):
+    """On 20 degrees it rolls down with 2/3 g sin, to 3 %, from mu = tan/3 = 0.1213 on, and slides with g (sin - mu cos), to 0.5 %, below."""
+    s, c, ramp, end = np.sin(np.radians(20)), np.cos(np.radians(20)), 0.5, 2.0
+    scene = dropped(2, 0.0, drag=0.0, E=1600.0, end=end, walls={"bottom": {"contact": {"friction": mu}}}, method={"particles": 4})
+    scene |= {"gravity": [{"table": {"time": [0, ramp], "value": [0, g]}} for g in (s, -c)], "grid": {"dimension": 2, "size": [2.0, 1.25], "cell": 1 / 16}}
+    scene["bodies"]["block"]["shape"] = {"ball": {"centre": [0.625, 0.5], "radius": 0.5}}
+    found = compiled(scene)
+    way = (found["position_mean_x"][-1] - found["position_mean_x"][0]) / ((end**3 - (end - ramp) ** 3) / (6 * ramp))
+    assert way == pytest.approx(2 / 3 * s if rolls else s - mu * c, rel=0.03 if rolls else 0.005)
+
+
+def test_a_rigid_disc_pressed_into_a_block():
+    """At rest the floor bears what the tool gives, to 1e-3."""
+    scene = dropped(2, 0.0, cells=8, E=10.0, drag=4.0, end=12.0, gravity=[0.0, 0.0])
+    path = {"time": [0, 3], "displacement": [[0.0, 0.0], [0.0, -0.1]]}
+    scene["tools"] = {"disc": {"shape": {"ball": {"centre": [0.75, 1.4], "radius": 0.4}}, "motion": {"path": path}}}
+    s = compiled(scene)
+    assert s["force_bottom_y"][-1] > 0.1 and s["force_bottom_y"][-1] == pytest.approx(-s["force_disc_y"][-1], rel=1e-3)
