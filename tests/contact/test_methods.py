@@ -30,7 +30,6 @@ def pair(**changes):
     return conducting(1, 8) | changes
 
 
-PUSHED = {"shape": {"box": {"lower": [1.0], "upper": [1.4]}}, "motion": {"force": [-1.0], "mass": 1.0}}
 REFUSED = {
     "xpic": (pair(method={"transfer": {"xpic": {"order": 2}}}), "method.transfer"),
     "explicit heat": (pair(method={"heat": "explicit"}), "method.heat"),
@@ -41,10 +40,6 @@ REFUSED = {
     "total frame and a contact wall": (dropped(1, 0.0, drag=0.0) | {"method": {"frame": "total"}}, "walls.left"),
     "total frame and a tool": (pressed(1) | {"method": {"frame": "total"}, "walls": {}}, "tools.press"),
     "implicit mechanics of two": (pair(method={"mechanics": "implicit"}), "method.mechanics"),
-    "implicit mechanics and a tool that a force moves": (
-        pressed(1) | {"method": {"mechanics": "implicit"}, "tools": {"press": PUSHED}},
-        "tools.press.motion.force",
-    ),
     "time scaling and a tool": (pressed(1) | {"time": {"end": 1.0, "scale": 10}}, "tools.press"),
     "welded apart": (conducting(1, 8) | {"contacts": [{"between": ["hot", "cold"], "welded": {}}]}, "contacts.0"),
     "a tool in a body": (pressed(1) | {"tools": {"press": {"shape": {"box": {"lower": [0.9], "upper": [1.5]}}}}}, "tools.press.shape"),
