@@ -211,7 +211,7 @@ def test_what_expands_rings_between_long_heat_steps(changes, steps, told):
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, test_scaling.py, test_guarded.py, test_narrow.py)."""
     assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late", "ring"}
-    assert set(LOOKS) | {"temperature", "inertia", "torn", "narrow"} == set(KINDS)
+    assert set(LOOKS) | {"temperature", "inertia", "torn", "traction", "narrow"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):
