@@ -56,6 +56,7 @@ def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
     assert cuts == 6 and not wrong
 
 
+@pytest.mark.plain
 def test_a_run_that_goes_over_to_another_frame():
     """`method.frame: auto`: cut before and after."""
     experiment = mpm.load({
