@@ -65,7 +65,7 @@ def show(config: Path, out: Path, smoke: bool) -> Shown:
 
     experiment, group = load(config), config.parent.name
     made = Shown(config, out / f"{group}_{config.stem}")
-    where, short = ("-o", str(made.out)), ("--smoke",) if smoke else ()
+    where, short = ("-o", str(made.out)), ("--smoke",) if smoke and experiment.smoke else ()
     name = os.path.relpath(config)
     if group == "studies":
         made.mpm("chart", name, *where, "--quick", "-q")
