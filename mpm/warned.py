@@ -21,8 +21,8 @@ KINDS = {
     "near": "let them meet for heat to pass, or take cells smaller than the gap",
     "late": "a longer `time.end`, or an earlier `from`",
     "ring": "shorter heat steps (`method.heat_step`), a larger `time.scale`, or `method.mechanics: implicit`",
-    "traction": "`method.frame: total`, which bears tractions on any surface at any strain; loads and displacement as a whole are right",
-    "narrow": "smaller cells, or trust its force alone: over the way it is off by up to a tenth, and pressure and area mean nothing",
+    "traction": "`method.frame: total`, which bears tractions on any surface at any strain; force and moment of the load as a whole are right",
+    "narrow": "smaller cells, or trust its force alone: over the way it is off by a tenth or so, and pressure and area mean nothing",
 }
 
 

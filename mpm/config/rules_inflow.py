@@ -54,7 +54,7 @@ def inflow(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
     found = ways(experiment, item)
     if len(found) != 1:
         said = "a nozzle is straight along one direction, and its flow never turns round: " if flow.velocity is not None else "a rate flows along gravity: "
-        said += f"it would flow along {len(found)}" if found else "it does not flow"
+        said += f"it would flow {len(found)} ways" if found else "it does not flow"
         yield Finding((*at, key), said, "one entry that is not zero, of one sign" if flow.velocity is not None else "gravity along one direction, or velocity")
         return
     yield from mouth(experiment, name, item, found[0][0])

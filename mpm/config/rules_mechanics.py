@@ -23,7 +23,7 @@ def named(experiment: Any, which: str) -> Any:
 def hindered(experiment: Any) -> str:
     """Why implicit mechanics cannot take an experiment, or is not what is wanted of it; empty where it can."""
     one = named(experiment, "implicit")
-    found = [*mechanics(one)]
+    found = list(mechanics(one))
     found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
     found += [wrong for index, load in enumerate(one.loads) for wrong in mechanics_load(one, index, load)]
     if found:
