@@ -57,7 +57,17 @@ def heat_scale(experiment, run):
 
 SLOW = ("verification", "stability", "studies", "reduction")  # a compilation each
 ALONE = ("lava_cake", "press_tpa", "ball_on_slab", "burger_cheese")  # scenes whose physics no other compiles
-SHORT = [pytest.param(path, marks=pytest.mark.slow if path.parent.name in SLOW or path.stem in ALONE else []) for path in CONFIGS]
+WIDE = ("cake_in_pan", "chocolate_melt", "chocolate_pour", "cookie_spread", "cube", "dough_creep", "dough_rheometer", "hearth_loaf", "pancake", "tin_loaf")
+
+
+def level(path):
+    """Which of the tests a config's short form belongs to."""
+    if path.parent.name in SLOW or path.stem in ALONE:
+        return [pytest.mark.slow]
+    return [pytest.mark.wide] if path.stem in WIDE else []
+
+
+SHORT = [pytest.param(path, marks=level(path)) for path in CONFIGS]
 
 
 @pytest.mark.parametrize("path", SHORT, ids=lambda path: str(path.relative_to(ROOT)))

@@ -67,6 +67,7 @@ def warm(tmp_path_factory):
     return run(tmp_path_factory.mktemp("cache"), SCENE)
 
 
+@pytest.mark.wide
 def test_a_kernel_holds_only_rooms_that_its_cache_is_named_after(cold):
     """Of one scene in a process of its own; tests/conftest.py asserts the same of every kernel that any test compiles."""
     assert cold[1]["held"] > 50 and cold[1]["astray"] == []

@@ -121,7 +121,7 @@ def test_run_and_sweep_share_points(mpm, write, marks, tmp_path):
     assert marks("run") == ["0.5", "0.2"] and (tmp_path / "out" / "experiment.json").read_bytes() == said
 
 
-@pytest.mark.parametrize("blow, code", [(signal.SIGINT, 130), (signal.SIGHUP, 143)])
+@pytest.mark.parametrize("blow, code", [(signal.SIGINT, 130), pytest.param(signal.SIGHUP, 143, marks=pytest.mark.wide)])
 def test_a_stop_is_no_timeout_says_how_to_go_on_and_replaces_nothing_whole(mpm, write, marks, tmp_path, blow, code):
     config, out = write([fake.BRIEF]), tmp_path / "out with space"
     said, ended = stopped(tmp_path, marks, blow, "run", config, *WHERE)

@@ -54,7 +54,7 @@ def test_full_is_told_once_and_by_the_exit_code(shell, write, tmp_path):
     assert shell("mpm schema >/dev/full")[::2] == (codes, err)
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "cp1252", pytest.param("ascii", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("encoding", ["utf-8", pytest.param("cp1252", marks=pytest.mark.wide), pytest.param("ascii", marks=pytest.mark.slow)])
 def test_a_reader_that_leaves_loses_nothing(shell, write, tmp_path, encoding):
     config = Path(write([0.2, 0.5, 1.0]))
     config.write_text(config.read_text().replace("A slab for", "🍞 for"), encoding="utf-8")
@@ -64,7 +64,7 @@ def test_a_reader_that_leaves_loses_nothing(shell, write, tmp_path, encoding):
     assert shell("mpm status a | (read line)", encoding)[0] in ("141 0", "0 0")  # one line may be gone before the reader is
 
 
-@pytest.mark.parametrize("encoding", [pytest.param("utf-8", marks=pytest.mark.slow), "cp1252", "ascii"])
+@pytest.mark.parametrize("encoding", [pytest.param("utf-8", marks=pytest.mark.slow), pytest.param("cp1252", marks=pytest.mark.wide), "ascii"])
 def test_letters_that_the_encoding_lacks_are_escaped(shell, write, encoding):
     config = Path(write([0.2]))
     config.write_text(config.read_text().replace("A slab for the", "Größe 🍞"), encoding="utf-8")

@@ -57,7 +57,7 @@ def test_a_failing_disk_at_length(tmp_path, table):
     assert not found["wrong"], found
 
 
-@pytest.mark.parametrize("who, times", [("parent", 1), ("all", 1), pytest.param("both", 50, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("who, times", [("parent", 1), pytest.param("all", 1, marks=pytest.mark.wide), pytest.param("both", 50, marks=pytest.mark.slow)])
 def test_kills_of_a_sweep_with_workers(tmp_path, table, who, times):
     rng, bad = np.random.default_rng(5), []
     data = many(400)

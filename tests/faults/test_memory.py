@@ -78,6 +78,7 @@ def measured(short):
     return tuple(map(float, done.stdout.split()))
 
 
+@pytest.mark.wide
 def test_the_estimate_of_a_small_point_is_within_a_fifth():
     assert 0.8 < ratio("scenes/loaf.yaml", {})[0] < 1.2
 

@@ -20,6 +20,7 @@ COLUMN = {
 }
 
 
+@pytest.mark.wide
 def test_a_column_that_sags():
     cuts, wrong = cut(mpm.load(COLUMN), 4, np.random.default_rng(5))
     assert cuts == 4 and not wrong

@@ -55,7 +55,7 @@ def different(one, two):
     return [name for name in {**one, **two} if one.get(name) != two.get(name)]
 
 
-@pytest.mark.parametrize("name", ["rigid", "points"])
+@pytest.mark.parametrize("name", ["rigid", pytest.param("points", marks=pytest.mark.wide)])
 def test_two_workers_and_another_order_give_the_same_bits(tmp_path, name):
     whole = swept(name, tmp_path / "whole", jobs=0)
     assert different(whole, swept(name, tmp_path / "turned", turned=True, jobs=2)) == []

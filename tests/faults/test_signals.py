@@ -75,7 +75,16 @@ def looked(out, way):
         assert tree_of(out / "sweep.nc").status.values.tolist() == [6, 6, 6] and len(list((out / "checkpoints").iterdir())) == 1
 
 
-@pytest.mark.parametrize("scheduler, way", [(None, "SIGTERM"), (None, "SIGHUP"), (None, "SIGINT twice"), (None, "SIGKILL"), ("local", "SIGINT")])
+@pytest.mark.parametrize(
+    "scheduler, way",
+    [
+        (None, "SIGTERM"),
+        pytest.param(None, "SIGHUP", marks=pytest.mark.wide),
+        pytest.param(None, "SIGINT twice", marks=pytest.mark.wide),
+        (None, "SIGKILL"),
+        ("local", "SIGINT"),
+    ],
+)
 def test_signals_stop_in_time_and_leave_no_orphan(tmp_path, marks, scheduler, way):
     ended, alone = leaving(tmp_path / "out", marks, scheduler, way)
     looked(tmp_path / "out", way)

@@ -8,10 +8,11 @@ import pytest
 DIMENSIONS = [1, 2, "axisymmetric", 3]
 # Every dimension with both schemes and both gradients; the other pairs are slow, and in 3-D blends too.
 PAIRS = [("apic", "mls"), ("flip", "bspline"), ("flip blend", "bspline"), ("pic", "bspline")]
-FIRST = [(dimension, *pair) for dimension in DIMENSIONS for pair in PAIRS[: 2 if dimension == 3 else 4]]
+FIRST = [(dimension, *pair) for dimension in DIMENSIONS for pair in PAIRS[: 1 if dimension == 3 else 4]]
+WIDE = [(3, *PAIRS[1])]
 EVERY = [(dimension, transfer, gradient) for dimension in DIMENSIONS for transfer, _ in PAIRS for gradient in ("mls", "bspline")]
-CASES = [pytest.param(*case, marks=[] if case in FIRST else pytest.mark.slow) for case in EVERY]
-over_dimensions = pytest.mark.parametrize("dimension", DIMENSIONS)
+CASES = [pytest.param(*case, marks=[] if case in FIRST else pytest.mark.wide if case in WIDE else pytest.mark.slow) for case in EVERY]
+over_dimensions = pytest.mark.parametrize("dimension", [pytest.param(each, marks=[] if each == 2 else pytest.mark.wide) for each in DIMENSIONS])
 
 
 def air(core, beta=0.5, outside=None):

@@ -89,12 +89,14 @@ def test_no_two_slabs_of_a_kind_may_touch_one_node():
         assert all(made.high[s] <= made.low[t] for s in range(8) for t in range(s + 2, 8))
 
 
+@pytest.mark.wide
 def test_the_same_bits_for_any_number_of_threads(core, small):
     runs = [played(core, scene(core), threads) for threads in (1, 2, 3)]
     assert runs[0][0].order.shared and runs[0][0].order.starts.shape[1] > 5 and runs[0][1].outcome.ok
     assert bits(runs[0][1]) == bits(runs[1][1]) == bits(runs[2][1])
 
 
+@pytest.mark.wide
 def test_slabs_change_nothing_but_the_order_of_sums(core, small, monkeypatch):
     _, cut = played(core, scene(core), 2)
     monkeypatch.setattr(module, "SHARED", 10**9)
@@ -107,6 +109,7 @@ def test_slabs_change_nothing_but_the_order_of_sums(core, small, monkeypatch):
             assert np.allclose(one[name], two[name], rtol=1e-9, atol=1e-10), name
 
 
+@pytest.mark.wide
 def test_a_record_changes_no_bit_of_the_run(core, small, monkeypatch):
     """Looking at velocities (contact/insync.py) sorts particles and puts them back."""
     _, looked = played(core, scene(core), 2)
@@ -117,6 +120,7 @@ def test_a_record_changes_no_bit_of_the_run(core, small, monkeypatch):
     assert looked.series["momentum_x"].tobytes() != blind.series["momentum_x"].tobytes()
 
 
+@pytest.mark.wide
 def test_particles_that_drift_past_their_slab_are_scattered_late(core, small, monkeypatch):
     """Cuts at the wrong places: many chunks are late, the answer is that of any other cut."""
     late = []
@@ -140,6 +144,7 @@ def throw(scene):
     p.x[7, 0], p.v[7] = 3.9, 500.0
 
 
+@pytest.mark.wide
 def test_a_failure_in_a_slab_names_body_and_particle(core, small):
     said = {played(core, scene(core, time={"end": 1.0, "step": 0.01}), threads, throw)[1].outcome.message for threads in (1, 2)}
     assert len(said) == 1 and "particle 7" in said.pop()

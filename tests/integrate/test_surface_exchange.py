@@ -57,7 +57,7 @@ def disc(core, biot, n, speed=1.0):
 
 # Heat steps of PACE h^2. Of Euler's steps at 0.15 and Bi = 0.1 the error of the step and APIC's damping, both of order 2 and of opposite sign, nearly cancel
 # (5e-6 at n = 32) and what is left shows order 1.6; at a quarter of the step damping is alone: 1.8e-4, 5.2e-5, 1.4e-5, 3.7e-6 at n = 8, 16, 32, 64.
-PACES = [(0.1, 0.0375), (1.0, 0.15), (10.0, 0.15)]
+PACES = [pytest.param(0.1, 0.0375, marks=pytest.mark.wide), (1.0, 0.15), (10.0, 0.15)]
 
 
 @pytest.mark.parametrize(("biot", "pace"), PACES)

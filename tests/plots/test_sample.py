@@ -73,6 +73,7 @@ def test_correlation_agrees_with_scipy():
     assert correlation(one, np.ones(40)) == 0.0
 
 
+@pytest.mark.wide
 def test_interval_covers_the_truth_about_as_often_as_it_says():
     """Of 60 independent pairs of 30, the 95 % interval should hold zero in all but a few: binomial(60, 0.05) exceeds 9 once in 1 400."""
     missed = 0

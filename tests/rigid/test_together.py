@@ -149,6 +149,7 @@ def test_laws_of_temperature_do_not_see_a_cut(laws):
     assert errors[1] < 0.6 * errors[0]
 
 
+@pytest.mark.wide
 def test_six_faces_of_a_filled_block():
     """3-D: a core in a shell of six plates, all of one material, cools as the block does; every body's ledger is closed."""
     a, b = 0.2, 0.8

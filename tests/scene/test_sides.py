@@ -43,7 +43,7 @@ def test_a_pipe_between_two_fluids():
 
 @pytest.mark.plain
 @pytest.mark.parametrize("moves", [False, True])
-@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("turn", [1, pytest.param(-1, marks=pytest.mark.wide)])
 def test_heat_through_an_edge_is_its_length_and_its_place(turn, moves):
     for edge, length, warm, cool in (("edge 2", 0.01, "second", "fourth"), ("edge 4", 0.01, "fourth", "second"), ("edge 1", 0.02, None, None)):
         run = plate(VERTICES[::turn], edge, moves)
@@ -54,7 +54,7 @@ def test_heat_through_an_edge_is_its_length_and_its_place(turn, moves):
 
 @pytest.mark.plain
 @pytest.mark.parametrize("frame", ["updated", "total"])
-@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("turn", [1, pytest.param(-1, marks=pytest.mark.wide)])
 def test_a_traction_on_an_edge_pushes_by_its_length(turn, frame):
     for edge, length in (("edge 2", 0.01), ("edge 3", 0.02)):
         load = {"of": "plate", "side": edge, "traction": {"nominal": [3.0, -4.0]}}

@@ -57,7 +57,7 @@ def inside(found, exact):
     return (found[..., 1] <= exact) & (exact <= found[..., 2])
 
 
-@pytest.mark.parametrize("share", [0.0, 0.05], ids=["whole", "5 % failed"])
+@pytest.mark.parametrize("share", [0.0, pytest.param(0.05, marks=pytest.mark.wide)], ids=["whole", "5 % failed"])
 @pytest.mark.parametrize("count", [512, pytest.param(4096, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("function", "exact"), CASES, ids=NAMES)
 def test_exact_indices_lie_in_their_intervals(function, exact, count, share):
@@ -120,7 +120,7 @@ def test_intervals_cover_as_often_as_they_say(name, count, samples, share):
     assert np.all(hits >= int(0.925 * samples)) and np.mean(hits) >= 0.95 * samples, hits / samples
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3], ids=["whole", "30 % failed"])
+@pytest.mark.parametrize("share", [pytest.param(0.0, marks=pytest.mark.wide), 0.3], ids=["whole", "30 % failed"])
 def test_a_function_that_no_polynomial_follows_gets_wide_intervals_that_hold_the_truth(share):
     """A step in one parameter, noise that no parameter makes, and a product of signs: first 0.4, 0; total 0.4 + 0.2, 0.2 and the noise's 0.4 to none."""
     random = np.random.default_rng(5)
@@ -146,6 +146,7 @@ def test_levels_of_a_grid_have_polynomials_of_their_own():
     assert found.first[:, 0] == pytest.approx(exact, abs=0.01) and found.total[:, 0] == pytest.approx(total, abs=0.01)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(("function", "exact"), CASES, ids=NAMES)
 def test_a_corner_that_failed_widens_the_interval_and_is_named(function, exact):
     from mpm.sensitivity.api import sentences

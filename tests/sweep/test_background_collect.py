@@ -121,7 +121,7 @@ sys.exit(main(["sweep", {file!r}, "-o", {out!r}, "-j", "1"]))
 """
 
 
-@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.wide)])
 def test_a_second_signal_while_the_interpreter_ends(config, tmp_path, marks, number, code):
     import fake_runner as fake
     from ruamel.yaml import YAML

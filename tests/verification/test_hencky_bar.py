@@ -39,6 +39,7 @@ def test_order(core, points, name):
     assert core.order(velocity) > 1.4 and velocity[-1] < 2e-3  # of order 1 and 8e-3 where it is told half a step late
 
 
+@pytest.mark.wide
 def test_order_on_cubic_splines(core, points):
     """No kink of the gradient at the knots, no stall: every field is of order 2."""
     runs = points("hencky_bar_cubic", "grid.cell", CELLS)
