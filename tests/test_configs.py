@@ -57,7 +57,10 @@ def heat_scale(experiment, run):
 
 SLOW = ("verification", "stability", "studies", "reduction")  # a compilation each
 ALONE = ("lava_cake", "press_tpa", "ball_on_slab", "burger_cheese")  # scenes whose physics no other compiles
-WIDE = ("cake_in_pan", "chocolate_melt", "chocolate_pour", "cookie_spread", "cube", "dough_creep", "dough_rheometer", "hearth_loaf", "pancake", "tin_loaf")
+WIDE = (
+    "cake_in_pan", "chocolate_melt", "chocolate_pour", "chocolate_pour_fit", "cookie_spread", "cube", "dough_creep", "dough_rheometer", "dough_rheometer_fit",
+    "hearth_loaf", "loaf_oven_spring", "pancake", "tin_loaf",
+)  # fmt: skip
 
 
 def level(path):

@@ -71,6 +71,7 @@ def single_and_double(core, dimension):
 SCALES = {"temperature_mean": 100, "temperature_min": 100, "heat_total": None, "position_mean_x": 1, "extent_x": 1, "J_max": 1, "momentum_x": None}
 
 
+@pytest.mark.wide
 def test_float32_agrees_with_float64(core):
     series = single_and_double(core, 1)
     for name, scale in SCALES.items():

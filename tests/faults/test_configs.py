@@ -70,7 +70,7 @@ def fuzz(folder, examples):
 
 def test_configs_at_random(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    _, _, grown, written = fuzz(tmp_path, 150)
+    _, _, grown, written = fuzz(tmp_path, 60)
     assert grown < BYTES and not written
 
 

@@ -42,6 +42,7 @@ def test_moving_bodies(core, transfer):
     assert cuts == 6 and not wrong
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("shared", [10**9, 1], ids=["alone", "in slabs"])
 def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
     from mpm.integrate import sorting

@@ -70,6 +70,7 @@ def test_a_thin_body_follows_air_that_warms_within_a_heat_step(core):
     closes(run)
 
 
+@pytest.mark.plain
 def test_a_cold_body_in_hot_air_warms(core):
     run = core.play(core.experiment(1, surfaces=air(core, outside=500.0)))[1]
     assert np.all(np.diff(run.series["temperature_mean"]) > 0) and run.series["heat_total"][-1] > 0

@@ -6,12 +6,12 @@ import pytest
 from mpm.diagnostics import strains
 
 DIMENSIONS = [1, 2, "axisymmetric", 3]
-# Every dimension with both schemes and both gradients; the other two pairs are slow because each costs a compilation.
+# Each costs a compilation: APIC with its own gradient in the plane; every dimension with both schemes and both gradients; the other two pairs.
+MARKS = {("apic", "mls"): [pytest.mark.wide], ("flip", "bspline"): [pytest.mark.wide]}
 PAIRS = [
-    pytest.param(dimension, transfer, gradient, marks=[] if (transfer, gradient) in (("apic", "mls"), ("flip", "bspline")) else pytest.mark.slow)
+    pytest.param(dimension, *pair, marks=[] if (dimension, *pair) == (2, "apic", "mls") else MARKS.get(pair, [pytest.mark.slow]))
     for dimension in DIMENSIONS
-    for transfer in ("apic", "flip")
-    for gradient in ("mls", "bspline")
+    for pair in (("apic", "mls"), ("apic", "bspline"), ("flip", "mls"), ("flip", "bspline"))
 ]
 over_pairs = pytest.mark.parametrize(("dimension", "transfer", "gradient"), PAIRS)
 
