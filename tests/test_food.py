@@ -20,6 +20,7 @@ def run(name, changes=None):
     return found
 
 
+@pytest.mark.wide
 def test_a_warm_cookie_spreads_as_a_film_that_slides():
     """At 60 degC, insulated and raw: dh/dt = -h (rho g h/2 - M)/eta, as nothing rubs below. The mean radius follows to 0.3 % over two minutes."""
     insulated = {f"surfaces.{k}.convection.beta": "0" for k in range(3)}

@@ -42,6 +42,7 @@ def test_flow(core):
     assert abs(run.finals["dissipation_transfer"]) < 0.02 * run.finals["dissipation_total"]
 
 
+@pytest.mark.wide
 def test_moduli_that_follow_temperature(core):
     """A bar that expands while its modulus falls: the energy that softening takes is no loss."""
     air = [{"of": "body", "convection": {"beta": 5.0, "outside": core.HOT + 60}}]

@@ -69,6 +69,7 @@ def fixed_slab(core, end, rate):
     return np.sqrt(np.average(wrong**2, weights=scene.bodies[0].particles.V0))
 
 
+@pytest.mark.wide
 def test_a_stretched_bar_loses_at_most_a_factor_of_three(core):
     """Stretched to twice its length while it cools, against the same Fourier number at rest."""
     assert fixed_slab(core, 0.2, 5.0) < 3 * fixed_slab(core, math.log(2) / 5, 0.0)

@@ -70,7 +70,10 @@ FBAR = {"fbar": {"own": 0.1}}
 
 @pytest.mark.parametrize(
     ("dimension", "locking"),
-    [("axisymmetric", None), *(pytest.param(*case, marks=pytest.mark.slow) for case in [(2, None), (2, FBAR), ("axisymmetric", FBAR), (3, None), (3, FBAR)])],
+    [
+        pytest.param("axisymmetric", None, marks=pytest.mark.plain),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in [(2, None), (2, FBAR), ("axisymmetric", FBAR), (3, None), (3, FBAR)]),
+    ],
 )
 def test_gradient_and_hessian(disc, dimension, locking):
     found, u = problem(disc, dimension, locking)

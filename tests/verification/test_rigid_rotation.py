@@ -8,6 +8,7 @@ from mpm.verification import exact_solution, rigid_rotation
 LOAD = rigid_rotation.LOAD * 0.01**2 * 0.97**2  # R0 Omega^2 R^2/(lam + 2 mu) of the config
 
 
+@pytest.mark.wide
 def test_within_the_load_of_rotation(points):
     for run in points("rigid_rotation", "grid.cell", (0.5, 0.25)):
         assert np.max(run.series["error_displacement_max"]) < LOAD
