@@ -109,14 +109,17 @@ def bytes_particle(experiment) -> int:
         state += 8 * (2 * D + 3 + 8)  # place at the start, force, time, rest, temperature, and a formula eight deep
     if experiment.loads:
         state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
+    if experiment.method.frame == "total":
+        flows = any(material.flow is not None for material in experiment.materials.values())
+        state += real * (D + COMPONENTS[D] * flows)  # places in the reference shape, what flow left
     return state + real * (D + D * D) + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
 
 
 def bytes_node(experiment) -> int:
-    """Of the nodes that bodies reach: two buffers of momentum and mass, and the fields of a heat step."""
+    """Of the nodes that bodies reach: two buffers of momentum and mass, or displacement, velocity, force, mass their numbers; the fields of a heat step."""
     real = 4 if experiment.method.precision == "float32" else 8
     warm = any(material.heat is not None for material in experiment.materials.values())
-    return 2 * 4 * real + (7 * 8 if warm else 0)
+    return (13 * real + 16 if experiment.method.frame == "total" else 2 * 4 * real) + (7 * 8 if warm else 0)
 
 
 def memory_at_most(experiment) -> int:

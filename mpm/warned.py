@@ -23,6 +23,7 @@ KINDS = {
     "ring": "shorter heat steps (`method.heat_step`), a larger `time.scale`, or `method.mechanics: implicit`",
     "traction": "`method.frame: total`, which bears tractions on any surface at any strain; force and moment of the load as a whole are right",
     "narrow": "smaller cells, or trust its force alone: over the way it is off by a tenth or so, and pressure and area mean nothing",
+    "bend": "`method.frame: total`; where that is refused, `method.gradient: bspline` and `method.particles: 4`",
 }
 
 

@@ -208,9 +208,27 @@ def test_what_expands_rings_between_long_heat_steps(changes, steps, told):
     assert not told or "4.7 times" in found[0]
 
 
+@pytest.mark.parametrize(("changes", "cells", "told"), [
+    ({}, 2.5, True), ({}, 0.5, False), ({"method.frame": "total"}, 2.5, False), ({"walls": {}}, 2.5, False), ({"walls": {"bottom": "stick"}}, 2.5, False),
+    ({"bodies.beam.shape": {"box": {"lower": [0, 0.4], "upper": [0.5, 0.6]}}}, 2.5, False),
+    ({"materials.m.flow": {"ellipse": {"M": 9e9, "p0": 1.0, "eta": 1.0}}}, 2.5, False),
+])  # fmt: skip
+def test_what_bends_far_in_the_updated_frame(changes, cells, told):
+    """A beam of five times its height whose lower end falls by 2.5 cells; half a cell, the total frame, no clamp, a block and flow do not warn."""
+    experiment = mpm.load({
+        "grid": {"dimension": 2, "size": [1.2, 0.8], "cell": 0.05}, "materials": {"m": {"density": 1, "elastic": {"hencky": {"E": 1e6, "nu": 0.3}}}},
+        "bodies": {"beam": {"shape": {"box": {"lower": [0, 0.4], "upper": [1, 0.6]}}, "material": "m"}}, "walls": {"left": "stick"}, "time": {"end": 1},
+    }, changes)  # fmt: skip
+    ends = {"position_min_x": (0.0, 0.0), "position_max_x": (1.0, 0.99), "position_min_y": (0.4, 0.4 - 0.05 * cells), "position_max_y": (0.6, 0.6)}
+    series = {name: np.array(values) for name, values in (ends | {"extent_x": (1.0, 0.99), "extent_y": (0.2, 0.2)}).items()}
+    found = list(LOOKS["bend"](experiment, SimpleNamespace(series=series)))
+    assert bool(found) is told
+    assert not told or "bends by 2.5 cells" in found[0]
+
+
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees are tested beside their guards (tests/test_guards.py, test_scaling.py, test_guarded.py, test_narrow.py)."""
-    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late", "ring"}
+    assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late", "ring", "bend"}
     assert set(LOOKS) | {"temperature", "inertia", "torn", "traction", "narrow"} == set(KINDS)
 
 

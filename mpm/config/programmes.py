@@ -1,6 +1,7 @@
 """Quantities over time: a number, or one of the kinds by which it may change (an oven programme).
 
-Table   values over times, linear or PCHIP between them, constant outside       `outside: {table: {time: [0, 600], value: [20 degC, 190 degC]}}`
+Table   values over times, linear, PCHIP or smooth between them, constant outside       `outside: {table: {time: [0, 600], value: [20 degC, 190 degC]}}`
+        `smooth` is a ramp, 3 s^2 - 2 s^3 of each step at s of its time         `gravity: [{table: {time: [0, 2], value: [0, 9.81], interpolation: smooth}}]`
         two values at one time are a jump                                       `beta: {table: {time: [0, 600, 600, 900], value: [10, 10, 40, 40]}}`
 Sine    mean + amplitude sin(2 pi t/period + phase)
 
@@ -27,7 +28,9 @@ class TimeTable(Kind):
     kind: ClassVar[str] = "table"
     time: tuple[Moment, ...] = doc(description="increasing times; the same time twice is a jump from the first value to the second", min_length=2)
     value: tuple[float, ...] = doc(description="value at each time")
-    interpolation: Annotated[Literal["linear", "pchip"], Choice()] = doc("linear", description="between the entries: straight lines, or monotone cubics")
+    interpolation: Annotated[Literal["linear", "pchip", "smooth"], Choice()] = doc(
+        "linear", description="between the entries: straight lines, monotone cubics, or ramps 3 s^2 - 2 s^3 that are level at each entry"
+    )
 
     @model_validator(mode="after")
     def shape(self) -> "TimeTable":

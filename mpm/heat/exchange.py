@@ -13,6 +13,7 @@ from mpm.state import NoExchange, NoRadiation, Radiation, Surface
 
 STEFAN_BOLTZMANN = 5.670374419e-8  # [W/(m2 K4)], exact in the SI of 2019
 PENALTY = 1e3  # of kappa/h: fixed temperature to within h/(PENALTY L) of the temperature difference
+FIRMER = 100.0  # in the total frame, whose heat steps are implicit and else of order 3: that h/(PENALTY L) was what thermal_cylinder was off by
 
 
 @role

@@ -57,19 +57,20 @@ LAWS = (Constant, Table, Bump, Logistic)
 
 
 def table(temperature, value, interpolation="linear"):
-    """A `Table` through (temperature [K], value): `linear`, or `pchip`, which is smooth and stays between neighbouring values (Fritsch & Butland 1984)."""
+    """A `Table` through (temperature [K], value): `linear`, `pchip`, which is smooth and stays between neighbouring values (Fritsch & Butland 1984), or
+    `smooth`, 3 s^2 - 2 s^3 of the way from each to the next: level at the points."""
     x, y = np.array(temperature, dtype=np.float64), np.array(value, dtype=np.float64)
     if x.ndim != 1 or x.shape != y.shape or len(x) < 2:
         raise ValueError(f"a table needs as many values as temperatures, two or more: got {x.size} temperatures and {y.size} values")
     if not (np.isfinite(x).all() and np.isfinite(y).all() and (np.diff(x) > 0).all()):
         raise ValueError("the temperatures of a table must rise, and all its numbers be finite")
-    if interpolation not in ("linear", "pchip"):
-        raise ValueError(f"interpolation {interpolation!r}: allowed are 'linear' and 'pchip'")
+    if interpolation not in ("linear", "pchip", "smooth"):
+        raise ValueError(f"interpolation {interpolation!r}: allowed are 'linear', 'pchip' and 'smooth'")
     w, rise = np.diff(x), np.diff(y) / np.diff(x)
     c = np.zeros((len(w), 4))
     c[:, 0], c[:, 1] = y[:-1], rise
-    if interpolation == "pchip" and len(w) > 1:
-        slope = pchip_slopes(w, rise)
+    if interpolation == "smooth" or (interpolation == "pchip" and len(w) > 1):
+        slope = np.zeros(len(x)) if interpolation == "smooth" else pchip_slopes(w, rise)
         c[:, 1] = slope[:-1]
         c[:, 2] = (3.0 * rise - 2.0 * slope[:-1] - slope[1:]) / w
         c[:, 3] = (slope[:-1] + slope[1:] - 2.0 * rise) / w**2

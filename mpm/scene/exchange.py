@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mpm.heat.exchange import PENALTY
+from mpm.heat.exchange import FIRMER, PENALTY
 from mpm.heat.programmes import Parts, Sine, bounds, during, spell, turns
 from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
@@ -107,7 +107,8 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
         raise SceneError(("surfaces",), f"two surface entries of {name} radiate from the same place: merge them into one")
     around = [act.outside for act in acts if most(act.beta) > 0] + [wall.temperature for wall in walls]
     seen = [experiment.bodies[name].temperature, *(t for one in around for t in bounds(one))]
-    penalty = PENALTY * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
+    firm = PENALTY * (FIRMER if experiment.method.frame == "total" else 1.0)
+    penalty = firm * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
     must_conduct(name, penalty > 0, any(most(act.beta) > 0 for act in (*acts, *walls)) or bool(radiating))
     radiation = Radiation(np.zeros(len(kept)), np.ones(len(kept)), np.zeros(len(kept))) if radiating else NoRadiation()
     return pieces_of(cut, kept, thermal.theta.dtype, radiation), Surroundings(acts, walls, zero, penalty), kept

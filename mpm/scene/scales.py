@@ -160,6 +160,23 @@ def lattice(outline) -> np.ndarray:
     return points[outline.distance(points) < 0]
 
 
+def lying(experiment, lower, upper, axis: int) -> tuple[list[bool], int]:
+    """(whether what has these bounds lies on the two sides of the domain along an axis, on how many of them it sticks)."""
+    size, sides = experiment.grid.size[axis], SIDES[experiment.grid.dimension][2 * axis : 2 * axis + 2]
+    ends = [abs(lower[axis]) <= FLUSH * size, abs(upper[axis] - size) <= FLUSH * size]
+    walls = [experiment.walls.get(side) for side in sides]
+    return ends, sum(touch and wall is not None and wall.acts == "stick" for touch, wall in zip(ends, walls, strict=True))
+
+
+def clamped(experiment) -> bool:
+    """Whether it is one body, in more than one direction, that sticks to a side of the domain: it may bend."""
+    grid = experiment.grid
+    if len(experiment.bodies) > 1 or grid.directions < 2:
+        return False
+    lower, upper = shape(next(iter(experiment.bodies.values())).shape, grid.dimension).bounds()
+    return any(lying(experiment, lower, upper, axis)[1] for axis in range(grid.directions))
+
+
 def bearing(experiment, name: str) -> tuple[str, float]:
     """What bears the weight of a body, and the strain at its clamp over R0 g H/E, H its extent along gravity: by beam theory at small deflection
 
@@ -170,14 +187,12 @@ def bearing(experiment, name: str) -> tuple[str, float]:
         return "", 1.0
     lower, upper = shape(experiment.bodies[name].shape, grid.dimension).bounds()
     down, found = int(np.argmax(np.abs(gravity))), 0.0
-    for axis, size in enumerate(grid.size):
-        ends = [abs(lower[axis]) <= FLUSH * size, abs(upper[axis] - size) <= FLUSH * size]
+    for axis in range(len(grid.size)):
+        ends, clamps = lying(experiment, lower, upper, axis)
         if axis == down:
             if ends[1 if gravity[down] > 0 else 0]:
                 return "stands", 1.0
             continue
-        walls = [experiment.walls.get(side) for side in SIDES[grid.dimension][2 * axis : 2 * axis + 2]]
-        clamps = sum(touch and wall is not None and wall.acts == "stick" for touch, wall in zip(ends, walls, strict=True))
         factor = 0.75 if grid.dimension == "axisymmetric" else {1: 3.0, 2: 0.5}.get(clamps, 0.0)
         slender = factor * ((upper[axis] - max(lower[axis], 0.0)) / (upper[down] - lower[down])) ** 2 if clamps else 0.0
         found = slender if not found else min(found, slender or found)  # the shorter span bears it

@@ -2,7 +2,8 @@
 
     choose(experiment, tolerance) -> Choice      offer, settings_in_words: the same for `mpm plan`
 
-1  The kind of physics (rigid heat, heat in particles, mechanics, coupled) picks the charts that speak for it (fronts.json: `python -m mpm.benchmarks.figures`).
+1  The kind of physics (rigid heat, heat in particles, mechanics, what bends from a wall, coupled) picks the charts that speak for it (fronts.json: `python -m
+   mpm.benchmarks.figures`).
    Of the numerical methods in them, at the automatic step, the one that reaches the tolerance in the least time, over all of those charts, is taken.
 2  The cell comes from pilots of the user's own scene (study/pilots.py).
 """
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.config.vary import label
+from mpm.scene.scales import clamped
 from mpm.study.pilots import NoChoice, Pilot, refine, silent
 
 FRONTS = Path(__file__).with_name("fronts.json")
@@ -35,12 +37,14 @@ class Choice:
 
 
 def physics(experiment: Any) -> str:
-    """rigid, heat, mechanics or coupled: which charts speak for a scene."""
+    """rigid, heat, mechanics, bending or coupled: which charts speak for a scene."""
     materials = [experiment.materials[body.material] for body in experiment.bodies.values()]
     if not experiment.moving:
         return "rigid"
     warm = any(material.heat is not None for material in materials)
-    return "mechanics" if not warm else "coupled" if any(material.expansion is not None for material in materials) else "heat"
+    if warm:
+        return "coupled" if any(material.expansion is not None for material in materials) else "heat"
+    return "bending" if clamped(experiment) and not any(material.flow is not None for material in materials) else "mechanics"
 
 
 def numerical(settings: dict[str, Any]) -> dict[str, Any] | None:

@@ -3,6 +3,10 @@
 import math
 from typing import Any
 
+from mpm.config.rules_frame import hindered
+from mpm.study.choose import physics
+from mpm.study.pilots import extent
+
 NUMERICS = ("grid", "method", "time")
 SIZES = ("grid.cell", "time.step")
 
@@ -50,10 +54,10 @@ def swept(experiment: Any) -> dict[str, Any] | None:
 
 
 def halvings(experiment: Any) -> list[float]:
-    """Five cells of which the config's own is the third; the coarsest leaves a body four cells where it can."""
-    cell, most = experiment.grid.cell, min(experiment.grid.size) / 4
+    """Cells of which the config's own is the third where a body has two of the coarsest, and the domain four: five in one direction, else to half of it."""
+    cell, most = experiment.grid.cell, min(min(experiment.grid.size) / 4, extent(experiment) / 2 * (1 + 1e-9))
     first = next((k for k in (2, 1, 0) if cell * 2**k <= most), 0)
-    return [cell * 2.0 ** (first - k) for k in range(5 if experiment.grid.directions == 1 else 4)]
+    return [cell * 2.0 ** (first - k) for k in range(5 if experiment.grid.directions == 1 else max(3, first + 2))]
 
 
 def rigid() -> dict[str, dict]:
@@ -70,8 +74,11 @@ def rigid() -> dict[str, dict]:
 def moving(experiment: Any) -> dict[str, dict]:
     """Bodies that move."""
     warm = any(experiment.materials[body.material].heat is not None for body in experiment.bodies.values())
-    both = (lambda kind: {"method.transfer": kind, "method.temperature": kind}) if warm else (lambda kind: {"method.transfer": kind})
-    found = {
+    frame = {} if experiment.method.frame == "updated" else {"method.frame": "updated"}
+    both = (lambda kind: frame | {"method.transfer": kind, "method.temperature": kind}) if warm else (lambda kind: frame | {"method.transfer": kind})
+    bends = physics(experiment) == "bending" and not hindered(experiment)  # first, so that limits are its own: others go elsewhere (docs/frames.md)
+    found = {"total frame": {"set": {"method.frame": "total"}}} if bends else {}
+    found |= {
         "APIC": {"set": both("apic")},
         "APIC, B-spline gradient": {"set": both("apic") | {"method.gradient": "bspline"}},
         "APIC, 3 particles": {"set": both("apic") | {"method.particles": 3}},

@@ -25,7 +25,7 @@ from mpm.state import PAD, Axisymmetric, Cubic
 from mpm.total.forces import act_on, average_volume, press
 from mpm.total.reference import fold, hold, mirror
 from mpm.total.strain import answer_all
-from mpm.transfer import CHUNK, Bspline, gather, lay_down, new_chunk, scatter
+from mpm.transfer import CHUNK, give, lay_down, new_chunk, take
 
 SHARE = 0.9  # of the largest stable step
 
@@ -100,7 +100,7 @@ def drift(reference, dt):
 @kernel
 def force_all(space, body, reference, chunk, dt, report):
     """Forces of the present displacement on to the nodes, flow and heating of a step dt behind it; returns the squeeze."""
-    X, f, gradient, squeeze = reference.X, reference.f, Bspline(), 1.0
+    X, f, squeeze = reference.X, reference.f, 1.0
     for n in reference.touched:
         for c in range(f.shape[1]):
             f[n, c] = 0.0
@@ -108,13 +108,13 @@ def force_all(space, body, reference, chunk, dt, report):
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
         lay_down(X, first, count, chunk.place)
-        gather(space, gradient, X, first, chunk, count, reference.u)
+        take(space, X, first, chunk, count, reference.u)
         chunk.a[:] = 0.0
         squeeze = max(squeeze, answer_all(space, body, reference, chunk, first, count, dt, report))
         if report[CODE] != 0.0:
             return squeeze
         act_on(body.source, body, chunk, first, count, dt, report)
-        scatter(space, gradient, X, first, chunk, count, f, chunk.reach)
+        give(space, X, first, chunk, count, f)
     fold(f, reference)
     return squeeze
 

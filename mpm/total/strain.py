@@ -10,7 +10,7 @@ import math
 
 from mpm.integrate.particle_update import answer
 from mpm.integrate.strain import CODE, GROW, HOOP, JACOBIAN, SWELL, fail, rest
-from mpm.integrate.stress_hencky import ACROSS, flows, stress_plane, stress_volume
+from mpm.integrate.stress_hencky import ACROSS, flows, stress_plane, stress_volume, swells, warms
 from mpm.isotropic import largest, lowest3, norm, split
 from mpm.jit import kernel, role
 from mpm.lanes import EIGHT, absolute, below, item, least, load8, maximum, minimum, most, peek, poke, splat8, sqrt, store
@@ -34,11 +34,12 @@ def answer_all(space, body, reference, chunk, first, count, dt, report):
 
 @kernel(inline=True)
 def begin(particles, reference, flowing, chunk, first, count, K):
-    """Rows of chunk.e: what flow has left (0 without), and J before."""
+    """Rows of chunk.e: what flow has left, where something flows, and J before."""
     e, n = chunk.e, chunk.e.shape[1]
     for p in range(count):
-        for k in range(K):
-            poke(e, k * n + p, peek(reference.plastic, K * (first + p) + k) if flowing else e.dtype.type(0))
+        if flowing:
+            for k in range(K):
+                poke(e, k * n + p, peek(reference.plastic, K * (first + p) + k))
         poke(e, JACOBIAN * n + p, peek(particles.J, first + p))
     rest(chunk, count, K)
 
@@ -90,15 +91,20 @@ def remember(reference, chunk, first, p, count, flowed, B):
 
 
 @kernel(inline=True)
+def grown(body, chunk, p, J):
+    """Eight J to their row of chunk.e, and J/J_before - 1 where something asks for it."""
+    e, n = chunk.e, chunk.e.shape[1]
+    if warms(body.heating) or swells(body.expansion):
+        before = load8(e, JACOBIAN * n + p)
+        store(e, GROW * n + p, (J - before) / before)
+    store(e, JACOBIAN * n + p, J)
+
+
+@kernel(inline=True)
 def weigh(particles, chunk, first, count):
-    """Tensors G of the chunk times -V0."""
-    D, n = chunk.a.shape[0], chunk.m.shape[0]
+    """-V0 of the chunk's particles, as lanes."""
     for p in range(count):
         poke(chunk.f, p, -peek(particles.V0, first + p))
-    for p in range(0, count, EIGHT):
-        factor = load8(chunk.f, p)
-        for k in range(D * D):
-            store(chunk.G, k * n + p, factor * load8(chunk.G, k * n + p))
 
 
 @answer_all.register(Line)
@@ -136,29 +142,28 @@ def answer_all_line(space, body, reference, chunk, first, count, dt, report):
 def plane_strain(space, body, reference, chunk, first, count, dt, report):
     """What Plane and Axisymmetric share; chunk.e[HOOP] holds F_33 - 1. Returns the squeeze."""
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
-    one, low, high, half, flat = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J)), real(0.5), splat8(real(FLAT))
-    swell, good, squeeze = splat8(real(0)), one, one
+    one, low, high, half = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J)), real(0.5)
+    swell, good, lowest = splat8(real(0)), one, splat8(real(0))
     begin(body.particles, reference, flows(body.flow), chunk, first, count, 4)
     for p in range(0, count, EIGHT):
         xx, xy, yx, yy, zz = load8(L, p), load8(L, n + p), load8(L, 2 * n + p), load8(L, 3 * n + p), load8(e, HOOP * n + p)
-        B = push2((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p)), (xx, xy, yx, yy, zz))
-        before, J = load8(e, JACOBIAN * n + p), one + dilation2((xx, xy, yx, yy, zz))
+        J = one + dilation2((xx, xy, yx, yy, zz))
         good = good * below(low, J) * below(J, high)
         swell = maximum(J, swell)
-        a, b, c = xx + xx + (xx * xx + yx * yx), yy + yy + (xy * xy + yy * yy), xy + yx + (xx * xy + yx * yy)  # F^T F - 1
+        B = a, b, across, c = xx + xx + (xx * xx + xy * xy), yy + yy + (yx * yx + yy * yy), zz + zz + zz * zz, xy + yx + (xx * yx + xy * yy)
         d = half * (a - b)
-        lowest = minimum(half * (a + b) - sqrt(d * d + c * c), zz + zz + zz * zz)
-        squeeze = maximum(one / maximum(one + lowest, flat), squeeze)
+        lowest = minimum(minimum(half * (a + b) - sqrt(d * d + c * c), across), lowest)
+        if flows(body.flow):
+            B = push2((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p)), (xx, xy, yx, yy, zz))
         store(e, p, B[0])
         store(e, n + p, B[1])
         store(e, 2 * n + p, B[2])
         store(e, 3 * n + p, B[3])
-        store(e, GROW * n + p, (J - before) / before)
-        store(e, JACOBIAN * n + p, J)
+        grown(body, chunk, p, J)
     admit(body.particles, chunk, first, count, swell, good, report)
     if flows(body.flow):
         keep_trial(chunk, count, 4)
-    return most(squeeze)
+    return 1.0 / max(1.0 + least(lowest), FLAT)
 
 
 @kernel(inline=True)
@@ -166,12 +171,14 @@ def plane_stress(body, reference, chunk, first, count):
     """The plastic metric where it flowed, and G = -V0 P from tau in chunk.S."""
     e, L, S, G, n, real = chunk.e, chunk.L, chunk.S, chunk.G, chunk.e.shape[1], chunk.e.dtype.type
     one = splat8(real(1))
+    weigh(body.particles, chunk, first, count)
     for p in range(0, count, EIGHT):
         xx, xy, yx, yy, zz = load8(L, p), load8(L, n + p), load8(L, 2 * n + p), load8(L, 3 * n + p), load8(e, HOOP * n + p)
         inverse = one / (one + (xx + yy + (xx * yy - xy * yx)))
         fxx, fyy = inverse * (one + xx), inverse * (one + yy)
         fxy, fyx = inverse * xy, inverse * yx
-        txx, txy, tyy = load8(S, p), load8(S, n + p), load8(S, 3 * n + p)
+        V = load8(chunk.f, p)
+        txx, txy, tyy = V * load8(S, p), V * load8(S, n + p), V * load8(S, 3 * n + p)
         store(G, p, txx * fyy - txy * fxy)
         store(G, n + p, txy * fxx - txx * fyx)
         store(G, 2 * n + p, txy * fyy - tyy * fxy)
@@ -182,7 +189,6 @@ def plane_stress(body, reference, chunk, first, count):
                 back = (fxy * yx - fyy * xx, -fxy, -fyx, fyx * xy - fxx * yy, -zz / (one + zz))  # F^-1 - 1, without cancellation
                 B = push2((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p)), back)
                 remember(reference, chunk, first, p, count, flowed, B)
-    weigh(body.particles, chunk, first, count)
 
 
 @answer_all.register(Plane)
@@ -217,8 +223,8 @@ def answer_all_axisymmetric(space, body, reference, chunk, first, count, dt, rep
 @answer_all.register(Volume)
 def answer_all_volume(space, body, reference, chunk, first, count, dt, report):
     e, L, n, real = chunk.e, chunk.L, chunk.e.shape[1], chunk.e.dtype.type
-    one, low, high, flat = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J)), splat8(real(FLAT))
-    swell, good, squeeze = splat8(real(0)), one, one
+    one, low, high = splat8(real(1)), splat8(real(LEAST_J)), splat8(real(MOST_J))
+    swell, good, lowest = splat8(real(0)), one, splat8(real(0))
     relax_volume(body.locking, space, reference.X, first, chunk, count)
     begin(body.particles, reference, flows(body.flow), chunk, first, count, 6)
     for p in range(0, count, EIGHT):
@@ -226,18 +232,18 @@ def answer_all_volume(space, body, reference, chunk, first, count, dt, report):
         yx, yy, yz = load8(L, 3 * n + p), load8(L, 4 * n + p), load8(L, 5 * n + p)
         zx, zy, zz = load8(L, 6 * n + p), load8(L, 7 * n + p), load8(L, 8 * n + p)
         H = (xx, xy, xz, yx, yy, yz, zx, zy, zz)
-        B = push3((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p), load8(e, 4 * n + p), load8(e, 5 * n + p)), H)
-        before, J = load8(e, JACOBIAN * n + p), one + dilation3(H)
+        J = one + dilation3(H)
         good = good * below(low, J) * below(J, high)
         swell = maximum(J, swell)
-        C = (xx + xx + (xx * xx + yx * yx + zx * zx), yy + yy + (xy * xy + yy * yy + zy * zy), zz + zz + (xz * xz + yz * yz + zz * zz),
-             xy + yx + (xx * xy + yx * yy + zx * zy), yz + zy + (xy * xz + yy * yz + zy * zz), xz + zx + (xx * xz + yx * yz + zx * zz))  # fmt: skip
-        mean, dev = split(C)
-        squeeze = maximum(one / maximum(one + lowest3(C, mean, norm(dev, largest(dev))), flat), squeeze)
+        B = (xx + xx + (xx * xx + xy * xy + xz * xz), yy + yy + (yx * yx + yy * yy + yz * yz), zz + zz + (zx * zx + zy * zy + zz * zz),
+             xy + yx + (xx * yx + xy * yy + xz * yz), yz + zy + (yx * zx + yy * zy + yz * zz), xz + zx + (xx * zx + xy * zy + xz * zz))  # fmt: skip
+        mean, dev = split(B)
+        lowest = minimum(lowest3(B, mean, norm(dev, largest(dev))), lowest)
+        if flows(body.flow):
+            B = push3((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p), load8(e, 4 * n + p), load8(e, 5 * n + p)), H)
         for k in range(6):
             store(e, k * n + p, B[k])
-        store(e, GROW * n + p, (J - before) / before)
-        store(e, JACOBIAN * n + p, J)
+        grown(body, chunk, p, J)
     admit(body.particles, chunk, first, count, swell, good, report)
     if flows(body.flow):
         keep_trial(chunk, count, 6)
@@ -245,7 +251,7 @@ def answer_all_volume(space, body, reference, chunk, first, count, dt, report):
     if report[CODE] == 0.0:
         stress_volume(body.elastic, body, chunk, first, count, dt, report)
         volume_stress(body, reference, chunk, first, count)
-    return most(squeeze)
+    return 1.0 / max(1.0 + least(lowest), FLAT)
 
 
 @kernel(inline=True)
@@ -253,17 +259,18 @@ def volume_stress(body, reference, chunk, first, count):
     """As plane_stress, in three directions."""
     e, L, S, G, n, real = chunk.e, chunk.L, chunk.S, chunk.G, chunk.e.shape[1], chunk.e.dtype.type
     one = splat8(real(1))
+    weigh(body.particles, chunk, first, count)
     for p in range(0, count, EIGHT):
         xx, xy, xz = one + load8(L, p), load8(L, n + p), load8(L, 2 * n + p)
         yx, yy, yz = load8(L, 3 * n + p), one + load8(L, 4 * n + p), load8(L, 5 * n + p)
         zx, zy, zz = load8(L, 6 * n + p), load8(L, 7 * n + p), one + load8(L, 8 * n + p)
         a0, a1, a2 = yy * zz - yz * zy, yz * zx - yx * zz, yx * zy - yy * zx  # cofactors, row by row: F^-T = cof F/J
-        inverse = one / (xx * a0 + xy * a1 + xz * a2)
+        inverse, V = one / (xx * a0 + xy * a1 + xz * a2), load8(chunk.f, p)
         a0, a1, a2 = inverse * a0, inverse * a1, inverse * a2
         b0, b1, b2 = inverse * (xz * zy - xy * zz), inverse * (xx * zz - xz * zx), inverse * (xy * zx - xx * zy)
         c0, c1, c2 = inverse * (xy * yz - xz * yy), inverse * (xz * yx - xx * yz), inverse * (xx * yy - xy * yx)
         for k in range(3):
-            tx, ty, tz = load8(S, 3 * k * n + p), load8(S, (3 * k + 1) * n + p), load8(S, (3 * k + 2) * n + p)
+            tx, ty, tz = V * load8(S, 3 * k * n + p), V * load8(S, (3 * k + 1) * n + p), V * load8(S, (3 * k + 2) * n + p)
             store(G, 3 * k * n + p, tx * a0 + ty * b0 + tz * c0)
             store(G, (3 * k + 1) * n + p, tx * a1 + ty * b1 + tz * c1)
             store(G, (3 * k + 2) * n + p, tx * a2 + ty * b2 + tz * c2)
@@ -273,4 +280,3 @@ def volume_stress(body, reference, chunk, first, count):
                 back = (a0 - one, b0, c0, a1, b1 - one, c1, a2, b2, c2 - one)  # F^-1 - 1, the transpose of F^-T
                 B = push3((load8(e, p), load8(e, n + p), load8(e, 2 * n + p), load8(e, 3 * n + p), load8(e, 4 * n + p), load8(e, 5 * n + p)), back)
                 remember(reference, chunk, first, p, count, flowed, B)
-    weigh(body.particles, chunk, first, count)

@@ -13,6 +13,7 @@ May use   mpm.basis, mpm.boundary, mpm.jit, mpm.lanes, mpm.state                
 To add    a scheme: a file with a NamedTuple and its `carry`; a dimension: a file like plane.py
 
 Further files
+    fixed      nodes to particles and back by the basis and its own gradient alone: what a body on fixed weights asks at every step
     packing    chunks packed for the rows of a stencil, and unpacked
     roles      what a transfer is asked, and the scratch that its chunks pass through
     stencils   stencils of a chunk of particles for quadratic B-splines, eight particles at once
@@ -20,6 +21,7 @@ Further files
 
 from mpm.transfer import line, plane, volume  # registers the dimensions
 from mpm.transfer.apic import Apic
+from mpm.transfer.fixed import give, take
 from mpm.transfer.flip import Flip
 from mpm.transfer.roles import (
     CHUNK,
@@ -45,6 +47,6 @@ from mpm.transfer.roles import (
 from mpm.transfer.xpic import Xpic
 
 __all__ = [
-    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "deliver", "fetch", "gather", "gather_scalar", "lay_down",
-    "line", "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "spread", "uses_basis_gradient", "volume", "wants_change",
+    "CHUNK", "Apic", "Bspline", "Chunk", "Flip", "Mls", "Xpic", "carry", "collect", "columns", "deliver", "fetch", "gather", "gather_scalar", "give",
+    "lay_down", "line", "new_chunk", "pick_up", "plane", "scatter", "scatter_scalar", "spread", "take", "uses_basis_gradient", "volume", "wants_change",
 ]  # fmt: skip

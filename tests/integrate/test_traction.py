@@ -7,8 +7,10 @@ import pytest
 
 import mpm
 from mpm.config import ConfigError
+from mpm.heat.programmes import at
 from mpm.integrate.traction import risen
 from mpm.scene.build import build
+from mpm.scene.exchange import programme
 from mpm.scene.refusal import SceneError
 from mpm.sources import acting
 from mpm.state import Load, NoSource, Ramp
@@ -40,6 +42,19 @@ def test_force_and_moment(core, dimension, side, area, centre, gradient):
     moment = np.einsum("pc,pd->cd", load.force, body.particles.x) + load.dipole.sum(axis=0)
     assert moment == pytest.approx(np.outer(T * area, centre), rel=1e-12)
     assert load.loaded.sum() < len(load.t) and load.scale == (pytest.approx(4 / 0.25**2) if gradient == "mls" else 1.0)
+
+
+@pytest.mark.parametrize("frame", ["updated", "total"])
+def test_gravity_sets_in_as_loads_do(core, frame):
+    """`interpolation: smooth`: the share of a load's ramp, and a fall of g T (s^3 - s^4/2)."""
+    g, T = -0.3, 0.8
+    falling = scene(core, 1, [], gravity=[{"table": {"time": [0, T], "value": [0, g], "interpolation": "smooth"}}], time={"end": 0.6, "step": 0.01},
+                    output={"every": 0.3}, method={"frame": frame})  # fmt: skip
+    law = programme(falling.gravity[0])
+    assert [at(law, t) for t in (0.0, 0.2, 0.5, 0.8, 2.0)] == pytest.approx([g * risen(t, T) for t in (0.0, 0.2, 0.5, 0.8, 2.0)], abs=1e-16)
+    _, run = core.play(falling)
+    s = run.series["momentum_x"] / run.finals["mass_total"]
+    assert s == pytest.approx([g * T * (u**3 - u**4 / 2) for u in (0.0, 0.375, 0.75)], abs=2e-5)
 
 
 @pytest.mark.parametrize("T", [0.08, -0.12])

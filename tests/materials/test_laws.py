@@ -115,6 +115,19 @@ def test_pchip_slopes_are_those_of_scipy(seed):
     assert value(table(x[:2], y[:2], "pchip"), x[:2].mean()) == pytest.approx(y[:2].mean())
 
 
+def test_smooth_tables_are_ramps_level_at_their_points():
+    law = table([0.0, 2.0, 3.0], [1.0, 5.0, 4.0], "smooth")
+    for t, exact in ((0.5, 1 + 4 * (3 / 16 - 2 / 64)), (1.0, 3.0), (2.25, 5 - (3 / 16 - 2 / 64)), (-1.0, 1.0), (9.0, 4.0)):
+        assert value(law, t) == pytest.approx(exact, rel=1e-15)
+    assert enthalpy(law, 3.0) - enthalpy(law, 0.0) == pytest.approx(2 * 3.0 + 4.5, rel=1e-15)
+    for t in (1e-4, 2.0 - 1e-4, 2.0 + 1e-4, 3.0 - 1e-4):
+        assert abs(slope_of(law, t)) < 2e-3
+
+
+def slope_of(law, t):
+    return (value(law, t + 1e-6) - value(law, t - 1e-6)) / 2e-6
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -122,7 +135,7 @@ def test_pchip_slopes_are_those_of_scipy(seed):
         (([300.0, 310.0], [1.0]), "2 temperatures and 1 values"),
         (([300.0, 300.0], [1.0, 2.0]), "must rise"),
         (([300.0, 310.0], [1.0, np.nan]), "finite"),
-        (([300.0, 310.0], [1.0, 2.0], "cubic"), "'linear' and 'pchip'"),
+        (([300.0, 310.0], [1.0, 2.0], "cubic"), "'linear', 'pchip' and 'smooth'"),
     ],
 )
 def test_bad_tables(arguments, says):

@@ -13,3 +13,12 @@ def beam(**changes):
         "gravity": [0, -29.0], "loads": [{"of": "beam", "drag": {"rate": 425}}], "time": {"end": 0.12}, "method": {"frame": "total"},
         "output": {"every": 0.02, "probes": {"tip": [1, 0.5]}, "observables": ["displacement.tip_y", "position.mean_y"]},
     }, changes)  # fmt: skip
+
+
+FAR = -0.5041  # m, as mpm/verification/cantilever.py has it
+
+
+def far(**changes):
+    """A cantilever that bends by half its length: 0.1 high, under R0 g = 4578.75, at rest."""
+    return beam(**{"grid.size": [1.2, 1.3], "bodies.beam.shape": {"box": {"lower": [0, 1.1], "upper": [1, 1.2]}}, "gravity": [0, -4578.75], "time.end": 0.2,
+                   "loads.0.drag.rate": 212, "output.every": 0.05, "output.probes.tip": [1, 1.15]} | changes)  # fmt: skip

@@ -211,6 +211,9 @@ def test_defaults_follow_the_physics_of_the_config():
     assert any("explicit" in name for name in rigid.methods) and set(rigid.refine) == {"cell"}
     moving = with_chart(mpm.load(SLAB, {"materials.unit.elastic": {"hencky": {"lam": 1.0, "mu": 1.0}}})).chart
     assert {"APIC", "FLIP", "PIC", "affine FLIP"} <= set(moving.methods) and set(moving.refine) == {"Co = const", "dt* = const"}
+    bending = with_chart(beam()).chart
+    assert bending.refine["Co = const"]["grid.cell"] == (0.1, 0.05, 0.025)  # two over its height at least
+    assert next(iter(bending.methods)) == "total frame" and bending.methods["FLIP"].set == {"method.frame": "updated", "method.transfer": "flip"}
     ratio = {name: np.array(path["method.heat_step"][:-1]) / path["method.heat_step"][1:] for name, path in moving.refine.items()}
     np.testing.assert_allclose(ratio["Co = const"], 2)
     np.testing.assert_allclose(ratio["dt* = const"], 4)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from beams import TIP, beam
+from beams import FAR, TIP, beam, far
 
 import mpm
 from mpm.benchmarks.figures import STUDIES
@@ -59,6 +59,9 @@ def test_physics_and_numbers_are_told_apart():
     assert physics(mpm.load(SLAB)) == "rigid"
     assert physics(mpm.load(SLAB, {"materials.unit.elastic": {"hencky": {"lam": 1.0, "mu": 1.0}}})) == "heat"
     assert numerical({"materials.unit.elastic": {}, "method.temperature": "apic"}) == {"method.temperature": "apic"}
+    assert {physics(beam(**{"method.frame": frame})) for frame in ("updated", "total")} == {"bending"}
+    assert physics(beam(walls={"bottom": "stick"})) == physics(beam(**{"materials.m.flow": {"ellipse": {"M": 1e9, "p0": 1, "eta": 1}}})) == "mechanics"
+    assert rank("bending", 0.01)[0][1] == {"method.frame": "total"}
     assert numerical({"grid.dimension": "axisymmetric"}) is None
 
 
@@ -161,11 +164,12 @@ def test_promises_are_kept_on_the_charted_problems(name):
         assert run.outcome.ok and Gauge(experiment, found.settings).error(run) <= tolerance, (tolerance, found)
 
 
-@pytest.mark.slow  # pilots of a cantilever
+@pytest.mark.slow  # pilots of two cantilevers
 @pytest.mark.parametrize("tolerance", [0.03, 0.01, 0.003])
-def test_the_promise_is_kept_where_a_beam_bends(tolerance):
-    """The tip's deflection by finite elements; `plan --tol` has only its pilots to go by."""
-    tree = beam(**{"method.frame": "updated"})
+@pytest.mark.parametrize(("scene", "tip"), [(beam, TIP), (far, FAR)])
+def test_the_promise_is_kept_where_a_beam_bends(scene, tip, tolerance):
+    """The tip's deflection by finite elements; `plan --tol` has only its pilots to go by. From the updated frame, whose limit is another, to the total one."""
+    tree = scene(**{"method.frame": "updated"})
     found = choose(tree, tolerance)
     run = mpm.run_point(mpm.load(tree.template(), found.settings))
-    assert abs(run.finals["displacement_tip_y"] / TIP - 1) <= tolerance, found
+    assert abs(run.finals["displacement_tip_y"] / tip - 1) <= tolerance, found

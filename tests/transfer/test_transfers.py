@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mpm.boundary import directions, extents
-from mpm.state import PAD, Axisymmetric, Line, Plane, Volume
+from mpm.state import PAD, Axisymmetric, Cubic, Line, Plane, Quadratic, Volume
 from mpm.transfer import (
     Apic,
     Bspline,
@@ -17,11 +17,13 @@ from mpm.transfer import (
     columns,
     gather,
     gather_scalar,
+    give,
     lay_down,
     new_chunk,
     scatter,
     scatter_scalar,
     spread,
+    take,
     wants_change,
 )
 
@@ -179,3 +181,24 @@ def test_schemes_scatter_the_same_momentum_and_force(space, gradient, scheme):
     if wants_change(scheme):
         gather(space, gradient, x, 0, copy, N, force)
         assert np.allclose(chunk.change, copy.v, atol=1e-13)
+
+
+@pytest.mark.plain
+@over_spaces
+@pytest.mark.parametrize("basis", [Quadratic(), Cubic()])
+def test_on_fixed_weights_the_same_sums_with_less(space, basis):
+    """`take` and `give` are `gather` and `scatter` of a value and a tensor on the basis gradient."""
+    D, x, space = directions(space), positions(space), space._replace(basis=basis)
+    u = np.random.default_rng(6).standard_normal((math.prod(extents(space)), columns(D)))
+    chunk, other = chunk_of(D), chunk_of(D)
+    chunk.m[:], chunk.A[:] = 0.0, 0.0
+    chunk.G[..., :N] = np.random.default_rng(7).standard_normal((D, D, N))
+    for one in (chunk, other):
+        lay_down(x, 0, N, one.place)
+    gather(space, Bspline(), x, 0, other, N, u)
+    take(space, x, 0, chunk, N, u)
+    nodes = np.zeros_like(u)
+    give(space, x, 0, chunk, N, nodes)
+    for field in ("v", "L"):
+        np.testing.assert_allclose(getattr(chunk, field)[..., :N], getattr(other, field)[..., :N], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(nodes, scattered(space, Bspline(), x, chunk), rtol=0, atol=1e-12)
