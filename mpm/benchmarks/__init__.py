@@ -9,6 +9,7 @@ Files
     costs          what `mpm plan` says a point costs, beside what it costs
     coupled        one whole step of 1-D thermoelastic particles as a matrix, and its spectral radius
     figures        the figures of docs/accuracy.md, by one command
+    frames         what the total frame costs beside the updated one
     house          the house in numbers, of any checkout
     implicit       implicit mechanics beside explicit steps, error against time
     mutants        do the tests bite? One place of the source is changed, and the nearest tests are run

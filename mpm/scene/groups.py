@@ -115,6 +115,7 @@ def motion(experiment, one: Scales) -> list[Group]:
         bent = sag * one.lever
         if one.held == "bends":
             said = f"it bends: strain {bent:.2g} where it is held, " + grade(10 * bent, "hardly to be seen", "to be seen", "far")
+            said += ": method.frame: auto" if 10 * bent >= SMALL and experiment.method.frame == "updated" else ""
         alone = not (one.speed or one.traction or one.gamma or experiment.tools)  # then gravity is all that moves it
         drop = "gravity" if one.held and bent < 1e-3 and not alone else ""
         found.append(Group("gravity/stiffness", "R0gH/E", sag, "R0 g H/E", said, one.name, drop, 2 * bent))
