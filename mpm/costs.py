@@ -97,10 +97,7 @@ def held_bytes(experiment, particles: int) -> int:
 
 
 def bytes_particle(experiment) -> int:
-    """At the peak of a run, which is where motion is summed up (mpm.observe): the state, and in double precision x, v, m, J, V0, squares of v and C.
-
-    And v and C as the run goes on from them (mpm.contact.insync).
-    """
+    """At the peak of a run, where motion is summed up (mpm.observe): the state; x, v, m, J, V0, squares of v and C; v and C that it goes on from (insync)."""
     D, real = experiment.grid.directions, 4 if experiment.method.precision == "float32" else 8
     state = real * (2 * D + D * D + COMPONENTS[D] + 3)  # x, v, C, B, J, m, V0
     if any(material.heat is not None for material in experiment.materials.values()):
@@ -109,9 +106,8 @@ def bytes_particle(experiment) -> int:
         state += 8 * (2 * D + 3 + 8)  # place at the start, force, time, rest, temperature, and a formula eight deep
     if experiment.loads:
         state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
-    if experiment.method.frame == "total":
-        flows = any(material.flow is not None for material in experiment.materials.values())
-        state += real * (D + COMPONENTS[D] * flows)  # places in the reference shape, what flow left
+    if experiment.method.frame == "total":  # places in the reference shape, what flow left
+        state += real * (D + COMPONENTS[D] * any(material.flow is not None for material in experiment.materials.values()))
     return state + real * (D + D * D) + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
 
 
