@@ -74,7 +74,7 @@ def rigid() -> dict[str, dict]:
 def moving(experiment: Any) -> dict[str, dict]:
     """Bodies that move."""
     warm = any(experiment.materials[body.material].heat is not None for body in experiment.bodies.values())
-    frame = {} if experiment.method.frame == "updated" else {"method.frame": "updated"}
+    frame: dict[str, Any] = {} if experiment.method.frame == "updated" else {"method.frame": "updated"}
     both = (lambda kind: frame | {"method.transfer": kind, "method.temperature": kind}) if warm else (lambda kind: frame | {"method.transfer": kind})
     bends = physics(experiment) == "bending" and not hindered(experiment)  # first, so that limits are its own: others go elsewhere (docs/frames.md)
     found = {"total frame": {"set": {"method.frame": "total"}}} if bends else {}
