@@ -32,10 +32,11 @@ from mpm.guards import ROUNDED
 from mpm.materials import value
 from mpm.records.variables import describe
 from mpm.rigid.touching import TOUCH
+from mpm.scene.bearing import lying
 from mpm.scene.exchange import most, programme
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.rigid import matter
-from mpm.scene.scales import exchanging, lying, scales
+from mpm.scene.scales import exchanging, scales
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import Run
 from mpm.warned import warning

@@ -6,6 +6,7 @@ contents    what each cell holds of a shape, and one particle a cell
 
 Further files
     base               Shape, the role of every shape
+    bearing            what bears a body: sides that it lies on, sides that hold it, how far it bends from them
     build              from a validated experiment to a scene of moving bodies
     conventions        what a dimension brings
     course             what a config lets change over time beside heat

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.config.vary import label
-from mpm.scene.scales import clamped
+from mpm.scene.bearing import clamped
 from mpm.study.pilots import NoChoice, Pilot, refine, silent
 
 FRONTS = Path(__file__).with_name("fronts.json")
