@@ -147,6 +147,16 @@ def landing() -> str:
     )
 
 
+def lying() -> str:
+    """What contact adds to the step of a cube on a floor."""
+    said = []
+    for dtype, name in (("f64", "float64"), ("f32", "float32")):
+        one = model("lying", dtype)
+        more = 100 * (one["contact_ns"] / one["mirror_ns"] - 1)
+        said.append(f"{name}: {one['contact_ns']:.0f} ns a particle-step, by a mirror {one['mirror_ns']:.0f} (+{more:.0f} %)")
+    return f"a cube of {one['particles']} particles that lies on a floor by contact: " + "; ".join(said)
+
+
 def whole_step() -> str:
     """What heat and flow add to a step in three dimensions, and the whole of it."""
     said = []
@@ -196,7 +206,7 @@ def fitted(peers: Path | None, python: str | None) -> str:
 
 FIGURES = {
     "random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown, "whole step": whole_step,
-    "empty box": empty_boxes, "landing": landing,
+    "empty box": empty_boxes, "landing": landing, "lying": lying,
     "smaller models": smaller_models,
 }  # fmt: skip
 

@@ -5,6 +5,7 @@ disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the
 loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 780 s of baking with its latent front
 apart         ns a particle-step of two cubes in opposite corners of a grid of 128^3, and side by side
 landing N     ms of 16 steps and of a heat step of a warm cube of 512 000 particles that lies on the floor, by N threads, and its bits
+lying [f32]   ns a particle-step of a cube of 97 000 particles that lies on the floor: by contact, and by a mirror of the wall, which asks for no contact
 points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
 Run them pinned to one core of an idle machine.
 """
@@ -168,6 +169,26 @@ def landing(threads: str) -> dict:
     return found | {"touching": bool(made.clock.touching), "particles": made.particles, "bits": bits}
 
 
+def lying(dtype: str = "f64") -> dict:
+    """Medians of rounds in turn; every step has contacts, or none."""
+    from mpm.study.phases import Bench
+
+    made = {}
+    for name, wall in (("contact_ns", "contact"), ("mirror_ns", "slip")):
+        made[name] = Bench(load({
+            "title": "Cube on a floor", "grid": {"dimension": 3, "size": [1, 1, 1], "cell": 1 / 64}, "walls": {"bottom": wall}, "gravity": [0, 0, -9.81],
+            "bodies": {"cube": {"shape": {"box": {"lower": [0.14, 0.14, 0.0], "upper": [0.86, 0.86, 0.72]}}, "material": "rubber"}},
+            "materials": {"rubber": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}}, "time": {"end": 1},
+            "method": {"precision": {"f32": "float32", "f64": "float64"}[dtype]},
+        }))  # fmt: skip
+    times: dict[str, list[float]] = {name: [] for name in made}
+    for _ in range(ROUNDS):
+        for name, bench in made.items():
+            times[name].append(bench.step_ns())
+    found = {name: statistics.median(one) for name, one in times.items()}
+    return found | {"touching": bool(made["contact_ns"].clock.touching), "particles": made["contact_ns"].particles}
+
+
 def points() -> dict:
     """A batch of relaxations that flow at every step."""
     data = {
@@ -183,4 +204,4 @@ def points() -> dict:
 
 if __name__ == "__main__":
     what, *more = sys.argv[1:]
-    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "landing": landing, "points": points}[what](*more)))
+    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "landing": landing, "lying": lying, "points": points}[what](*more)))

@@ -87,8 +87,10 @@ def find_lone_surface(surface, space, body, b, stops, found, count):
             continue
         for axis in range(D):
             for side in range(2):
+                if stops[b, axis, side] < 0.0:
+                    continue
                 far = before(space, axis, side, x[p, axis])
-                if far >= 0.5 * space.h or stops[b, axis, side] < 0.0:
+                if far >= 0.5 * space.h:
                     continue
                 gap = far - 0.5 * (body.particles.V0[p] * body.particles.J[p] / around(space, x[p, 0])) ** (1.0 / D)
                 if gap >= 0.1 * space.h:

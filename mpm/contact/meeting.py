@@ -166,14 +166,15 @@ class Meeting:
         h, D, found, unforeseen = self.space.h, directions(self.space), [math.inf], None
         boxes, sight = [box(body.particles.x) for body in self.bodies], seen(self.space) + SLACK
         for b, (low, high) in enumerate(boxes):
+            depth = skin_depth(self.bodies[b], h)
             for axis, side in np.argwhere(self.walls[b, :D] == CONTACT):
                 far = (extents(self.space)[axis] - 1 - 2 * PAD) * h - high[axis] if side else low[axis]
                 mirrored = (self.walls[:, axis, side] < CONTACT).any()
-                margin = max(skin_depth(self.bodies[b], h), 0.5 * sight * h if mirrored else 0.0)
+                margin = max(depth, 0.5 * sight * h if mirrored else 0.0)
                 found.append(far - margin)
                 if far < margin and self.stops[b, axis, side] < 0 and self.touching.walls[self.fields[b], axis, side] == CONTACT:
                     unforeseen = UNPREPARED, b
-            found += [0.5 * (self.drive.gap(t, time, low, high) - skin_depth(self.bodies[b], h) - SURE * h) for t in range(len(self.tool_names))]
+            found += [0.5 * (self.drive.gap(t, time, low, high) - depth - SURE * h) for t in range(len(self.tool_names))]
             for c in range(b):
                 if self.fields[b] != self.fields[c]:
                     apart = float(np.max(np.maximum(low - boxes[c][1], boxes[c][0] - high)))

@@ -54,7 +54,7 @@ def weigh_in_slabs(scene, touching, skin, near, nodes, slabs, crew):
     parts = 2 * np.arange(-(-count // PART))  # even: they wait for nobody
     for b, body in enumerate(scene.for_motion):
         f = touching.fields[b]
-        box, short = mark(space, gradient, b, touching.walls[f], contacts, count, number)
+        box, short = mark(space, b, touching.walls[f], contacts, count, number)
 
         def add(which, f=f, b=b, body=body, box=box, short=short):
             for s in which:
@@ -66,7 +66,7 @@ def weigh_in_slabs(scene, touching, skin, near, nodes, slabs, crew):
                 some = int(part) * PART, min(count, (int(part) + 1) * PART)
                 shares(space, gradient, b, touching.walls[f], contacts, some, nodes[f], number, short, weights)
 
-        if len(short) > 0:
+        if len(short[0]) > 0:
             if apart(scene, touching.walls, slabs):
                 crew.work(order, add)
             else:

@@ -11,12 +11,14 @@ look along the normal, keep w~. In an axisymmetric body V_p carries its hoop str
 import numpy as np
 from numba import literal_unroll
 
-from mpm.boundary import directions
-from mpm.contact.skin import hoop
-from mpm.contact.spots import new_spots, seen, spot
+from mpm.boundary import directions, extents
+from mpm.contact.spots import along, new_spots, pulls, seen, spot
 from mpm.jit import kernel
+from mpm.lanes import fma, load4, splat4, store
+from mpm.state import PAD
 
 WIDE = 4  # numbers of a weight: D directions and nothing
+CLEAR = 1e-6  # cells: positions are rounded
 
 
 @kernel
@@ -25,8 +27,8 @@ def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, 
     weights, b = new_weights(space, count), 0
     for body in literal_unroll(bodies):
         f, x = fields[b], body.particles.x
-        box, short = mark(space, gradient, b, walls[f], contacts, count, number)
-        if len(short) > 0:
+        box, short = mark(space, b, walls[f], contacts, count, number)
+        if len(short[0]) > 0:
             fall_short(space, gradient, body.particles, b, walls[f], skin, box, number, short, (0, x.shape[0]))
         shares(space, gradient, b, walls[f], contacts, (0, count), nodes[f], number, short, weights)
         unmark(contacts, b, count, number, weights)
@@ -38,26 +40,40 @@ def weigh(space, gradient, bodies, fields, walls, skin, contacts, count, nodes, 
 def new_weights(space, count):
     """Room for (at, coef) of `count` contacts."""
     M = seen(space) ** directions(space)
-    return np.zeros((count, 2, M), np.int64), np.zeros((count, 2, M, WIDE))
+    return np.empty((count, 2, M), np.int64), np.empty((count, 2, M, WIDE))
+
+
+@kernel(inline=True)
+def spans(space, place):
+    """How many nodes there are in each of three directions."""
+    D, reach = directions(space), place.shape[1]
+    return reach, reach if D > 1 else 1, reach if D > 2 else 1
 
 
 @kernel
-def mark(space, gradient, b, walls, contacts, count, number):
-    """Number the nodes where body b is balanced; the box (low, high) of the particles there, and room for r and T of each node."""
-    D, spots, marked = directions(space), new_spots(space), 0
-    low, high = np.full(D, 1e300), np.full(D, -1e300)
+def mark(space, b, walls, contacts, count, number):
+    """Number the nodes where body b is balanced; the box (low, high) of what touches them, and room for r (nodes, WIDE) and T (nodes, D, D) of each."""
+    D, shape, spots, marked = directions(space), extents(space), new_spots(space), 0
+    place, low, high = spots[6], np.full(directions(space), 1e300), np.full(directions(space), -1e300)
+    n0, n1, n2 = spans(space, place)
     for i in range(count):
         for k in range(2):
             if contacts.body[i, k] != b or not contacts.balanced[i, k]:
                 continue
-            spot(space, gradient, walls, contacts.home[i, k], spots)
-            for n in spots[0]:
-                if number[n] < 0:
-                    number[n] = marked
-                    marked += 1
+            along(space, walls, contacts.home[i, k], spots)
+            for j0 in range(n0):
+                for j1 in range(n1):
+                    for j2 in range(n2):
+                        n = (place[0, j0] * shape[1] + place[1, j1]) * shape[2] + place[2, j2]
+                        if number[n] < 0:
+                            number[n] = marked
+                            marked += 1
             for a in range(D):
-                low[a], high[a] = min(low[a], contacts.home[i, k, a]), max(high[a], contacts.home[i, k, a])
-    return (low, high), np.zeros((marked, D + D * D))
+                for j in range(n0):
+                    low[a], high[a] = min(low[a], place[a, j]), max(high[a], place[a, j])
+    for a in range(D):  # from nodes to places, and half of what a particle sees on either side
+        low[a], high[a] = (low[a] - PAD - 0.5 * n0 - CLEAR) * space.h, (high[a] - PAD + 0.5 * n0 + CLEAR) * space.h
+    return (low, high), (np.zeros((marked, WIDE)), np.zeros((marked, D, D)))
 
 
 @kernel
@@ -76,8 +92,8 @@ def shares(space, gradient, b, walls, contacts, some, nodes, number, short, weig
                 balance(space, contacts, i, k, nodes, number, spots, short, system, W)
             for m in range(M):
                 at[i, k, m] = spots[0][m]
-                for c in range(D):
-                    coef[i, k, m, c] = W[m] * spots[4][c, m]
+                for c in range(WIDE):
+                    coef[i, k, m, c] = W[m] * spots[4][c, m] if c < D else 0.0
             if mirrored:
                 merge(at[i, k], coef[i, k])
 
@@ -104,48 +120,53 @@ def plain(spots, home, point, W):
 @kernel
 def fall_short(space, gradient, particles, b, walls, skin, box, number, short, some):
     """r and T of the marked nodes, from the particles some[0] <= p < some[1] of body b within `box` (low, high), and from their pieces."""
-    spots = new_spots(space)
-    at, w, G, _, sign = spots[0], spots[1], spots[2], spots[3], spots[4]
-    low, high = box
-    D, M, far, home, W = directions(space), len(at), seen(space) * space.h, np.empty(directions(space)), np.empty(len(at))
+    spots, D, shape, home = new_spots(space), directions(space), extents(space), np.empty(directions(space))
+    at, w, sign, place, lines = spots[0], spots[1], spots[4], spots[6], np.zeros((3, seen(space), WIDE))
+    (low, high), (lack, T), W, (n0, n1, n2) = box, short, np.empty(len(at)), spans(space, place)
+    for a in range(3):
+        for c in range(WIDE):
+            lines[a, 0, c] = 1.0
     for p in range(some[0], some[1]):
         inside = True
         for a in range(D):
             home[a] = particles.x[p, a]
-            inside = inside and low[a] - far < home[a] < high[a] + far
+            inside = inside and low[a] <= home[a] <= high[a]
         if not inside:
             continue
-        spot(space, gradient, walls, home, spots)
-        V = float(particles.V0[p]) * float(particles.J[p])
-        for m in range(M):
-            n = number[at[m]]
-            if n >= 0:
-                for c in range(D):
-                    short[n, c] += V * G[c, m] * sign[c, m]
-                if hoop(space):
-                    short[n, 0] += V * w[m] / home[0] * sign[0, m]
+        along(space, walls, home, spots)
+        pulls(space, gradient, walls, home, spots, lines)
+        V = splat4(float(particles.V0[p]) * float(particles.J[p]))
+        for i in range(n0):
+            first = V * load4(lines, WIDE * i)
+            for j in range(n1):
+                row, both = (place[0, i] * shape[1] + place[1, j]) * shape[2], first * load4(lines, WIDE * (n0 + j))
+                for k in range(n2):
+                    n = number[row + place[2, k]]
+                    if n >= 0:
+                        store(lack, WIDE * n, fma(both, load4(lines, WIDE * (2 * n0 + k)), load4(lack, WIDE * n)))
     for s in range(skin.first[b], skin.first[b + 1]):
         inside = skin.area[s] > 0.0 and some[0] <= skin.owner[s] < some[1]
         for a in range(D):
-            inside = inside and low[a] - far < skin.home[s, a] < high[a] + far
+            inside = inside and low[a] <= skin.home[s, a] <= high[a]
         if not inside:
             continue
         spot(space, gradient, walls, skin.home[s], spots)
         plain(spots, skin.home[s], skin.x[s], W)
-        for m in range(M):
+        for m in range(len(at)):
             n = number[at[m]]
             if n >= 0:
                 for c in range(D):
+                    pressed = skin.area[s] * skin.normal[s, c]
+                    lack[n, c] -= pressed * W[m] * sign[c, m]
                     for e in range(D):
-                        short[n, D + c * D + e] += skin.area[s] * w[m] * skin.normal[s, c] * skin.normal[s, e]
-                    short[n, c] -= skin.area[s] * skin.normal[s, c] * W[m] * sign[c, m]
+                        T[n, c, e] += pressed * w[m] * skin.normal[s, e]
 
 
 @kernel
 def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
     """From w~ to W; left at w~ where the nodes cannot carry it."""
     at, w, way, sign = spots[0], spots[1], spots[3], spots[4]
-    D, M, out = directions(space), len(at), -1.0 if k == 0 else 1.0
+    D, M, out, (lack, T) = directions(space), len(at), -1.0 if k == 0 else 1.0, short
     system[:] = 0.0
     system[0, D + 1] = 1.0
     shift = (contacts.point[i, k] - contacts.home[i, k]) / space.h
@@ -155,10 +176,10 @@ def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
         borne = 0.0
         for c in range(D):
             for e in range(D):
-                borne += contacts.normal[i, c] * contacts.normal[i, e] * short[n, D + c * D + e]
+                borne += contacts.normal[i, c] * contacts.normal[i, e] * T[n, c, e]
         if borne > 1e-12 * space.h ** (D - 1):
             for c in range(D):
-                W[m] += out * contacts.normal[i, c] * sign[c, m] * short[n, c] * w[m] / borne
+                W[m] += out * contacts.normal[i, c] * sign[c, m] * lack[n, c] * w[m] / borne
         terms(way, shift, space.h, m, y)
         mass = nodes[at[m], D]
         for r in range(D + 1):

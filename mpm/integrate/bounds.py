@@ -22,17 +22,17 @@ import math
 
 import numpy as np
 
+from mpm.basis import stencil
 from mpm.boundary import directions, extents
-from mpm.boundary.walls import clear, fold, unfold
+from mpm.boundary.walls import clear, empty, fold, unfold
 from mpm.heat.local import rise
-from mpm.integrate.heat_step import reach
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.materials.laws import enthalpy
 from mpm.state import NoExchange, Radiation, Thermal
-from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
+from mpm.transfer import gather_scalar, scatter_scalar
 
-FIELDS = 2  # scratch
+FIELDS = 3  # scratch
 
 
 def bounds_of(body, seen: np.ndarray) -> tuple[float, float]:
@@ -77,26 +77,29 @@ def repair(space, particles, thermal, nodes, walls, bound, sign):
     """Move what lies above `bound` (sign 1), or is missing below it (sign -1): (heat moved, heat left where it was)."""
     x, m, theta = particles.x, particles.m, thermal.theta
     N, D, shape = x.shape[0], directions(space), extents(space)
-    excess, room = np.zeros(N), np.zeros(N)
+    excess, room, some = np.zeros(N), np.zeros(N), np.zeros(N, np.bool_)
     at_bound = enthalpy(thermal.alpha, thermal.zero + bound)
     whole, space_left = 0.0, 0.0
     for i in range(N):
         beyond = sign * m[i] * (enthalpy(thermal.alpha, thermal.zero + theta[i]) - at_bound)
-        excess[i], room[i] = max(beyond, 0.0), max(-beyond, 0.0)
+        excess[i], room[i], some[i] = max(beyond, 0.0), max(-beyond, 0.0), beyond > 0.0
     for i in range(N):  # sums apart from stores keep their bits, whichever arrays are neighbours
         whole += excess[i]
         space_left += room[i]
     if space_left < whole:
         return 0.0, whole
-    beyond_at, room_at = nodes[0], nodes[1]
-    work = np.zeros((1 + 3 * D, CHUNK))
+    beyond_at, room_at, near = nodes[0], nodes[1], nodes[2]
+    work = np.zeros((1 + 3 * D, 1))
     value, slope, grad, zero = work[0], work[1 : 1 + D], work[1 + D : 1 + 2 * D], work[1 + 2 * D : 1 + 3 * D]
-    for first in range(0, N, CHUNK):
-        count = min(CHUNK, N - first)
-        scatter_scalar(space, x, first, count, excess[first : first + count], zero, zero, beyond_at)
-        scatter_scalar(space, x, first, count, room[first : first + count], zero, zero, room_at)
-    box = reach(space, x)
-    fold(beyond_at.reshape(-1, 1), 0, shape, box.copy(), walls)
+    box = reach_of(space, x, some)
+    scatter_some(space, x, some, excess, zero, beyond_at)
+    fold(beyond_at.reshape(-1, 1), 0, shape, box, walls)
+    unfold(beyond_at.reshape(-1, 1), 0, shape, box, walls)
+    beside(space, x, beyond_at, box, near, some)
+    grown = reach_of(space, x, some)
+    for a in range(3):
+        box[a, 0], box[a, 1] = min(box[a, 0], grown[a, 0]), max(box[a, 1], grown[a, 1])
+    scatter_some(space, x, some, room, zero, room_at)
     fold(room_at.reshape(-1, 1), 0, shape, box, walls)
     for i in range(box[0, 0], box[0, 1]):
         for j in range(box[1, 0], box[1, 1]):
@@ -106,11 +109,10 @@ def repair(space, particles, thermal, nodes, walls, bound, sign):
     unfold(beyond_at.reshape(-1, 1), 0, shape, box, walls)
     given = 0.0
     taken = np.zeros(N)
-    for first in range(0, N, CHUNK):
-        count = min(CHUNK, N - first)
-        gather_scalar(space, x, first, count, beyond_at, value, slope, grad)
-        for p in range(count):
-            taken[first + p] = room[first + p] * min(value[p], 1.0)
+    for i in range(N):
+        if some[i]:
+            gather_scalar(space, x, i, 1, beyond_at, value, slope, grad)
+            taken[i] = room[i] * min(value[0], 1.0)
     for i in range(N):
         given += taken[i]
     share = max(0.0, whole - given) / (space_left - given) if space_left > given else 0.0
@@ -121,7 +123,56 @@ def repair(space, particles, thermal, nodes, walls, bound, sign):
             heat = sign * (taken[i] + share * (room[i] - taken[i]))
             warmer = theta[i] + rise(thermal.alpha, thermal.zero + theta[i], heat / m[i])
             theta[i] = sign * min(sign * warmer, sign * bound)
-    for field in range(FIELDS):
-        used = box.copy()
-        clear(nodes[field].reshape(-1, 1), shape, used)
+    clear(beyond_at.reshape(-1, 1), shape, box.copy())
+    clear(room_at.reshape(-1, 1), shape, box)
     return whole, 0.0
+
+
+@kernel
+def scatter_some(space, x, some, values, zero, nodes):
+    """nodes_i += sum w values, of `some` particles."""
+    for i in range(x.shape[0]):
+        if some[i]:
+            scatter_scalar(space, x, i, 1, values[i : i + 1], zero, zero, nodes)
+
+
+@kernel
+def reach_of(space, x, some):
+    """The box (3, 2) of nodes that `some` particles touch."""
+    box = np.empty((3, 2), np.int64)
+    empty(extents(space), box)
+    for i in range(x.shape[0]):
+        if some[i]:
+            for a in range(x.shape[1]):
+                i0, w, _, _, _ = stencil(space.basis, x[i, a] / space.h)
+                box[a, 0], box[a, 1] = min(box[a, 0], i0), max(box[a, 1], i0 + len(w))
+    return box
+
+
+@kernel
+def beside(space, x, nodes, box, near, some):
+    """some: which particles touch a node of `box` where `nodes` is not nothing. near (n,): scratch, zero before and after."""
+    D, shape, seen = directions(space), extents(space), len(stencil(space.basis, 0.5)[1])
+    stride, begins = (shape[1] * shape[2], shape[2], 1), box.copy()  # of stencils that reach into the box
+    for a in range(D):
+        begins[a, 0] = max(box[a, 0] - seen + 1, 0)
+    for i in range(box[0, 0], box[0, 1]):
+        for j in range(box[1, 0], box[1, 1]):
+            row = (i * shape[1] + j) * shape[2]
+            for n in range(row + box[2, 0], row + box[2, 1]):
+                near[n] = nodes[n]
+    for a in range(D):  # the largest of the stencil that begins at a node, one direction after another: what is read is not yet written over
+        for i in range(begins[0, 0], box[0, 1]):
+            for j in range(begins[1, 0], box[1, 1]):
+                for k in range(begins[2, 0], box[2, 1]):
+                    n = i * stride[0] + j * stride[1] + k
+                    for m in range(1, min(seen, box[a, 1] - (i, j, k)[a])):
+                        near[n] = max(near[n], near[n + m * stride[a]])
+    for p in range(x.shape[0]):
+        n, inside = 0, True
+        for a in range(D):
+            first = stencil(space.basis, x[p, a] / space.h)[0]
+            inside = inside and begins[a, 0] <= first < box[a, 1]
+            n += first * stride[a]
+        some[p] = inside and near[n] > 0.0
+    clear(near.reshape(-1, 1), shape, begins)

@@ -69,7 +69,7 @@ class Parts:
 
     def look(self, s: int) -> None:
         self.boxes[s] = reach(self.space, self.parts[s].particles.x)
-        self.places[s] = place(self.parts[s].surface, self.space, self.parts[s])
+        self.places[s] = places(self.space, self.parts[s])
 
     def scatter(self, capacity, heat) -> None:
         """Capacity and heat on to the nodes."""
@@ -99,6 +99,12 @@ class Parts:
             gather_heat(self.space, self.parts[s].particles.x, self.parts[s].thermal, start, end, back, self.work[s])
 
         self.each(one)
+
+
+@kernel
+def places(space, body):
+    """Present pieces of a part: a role that Python calls would be plain Python."""
+    return place(body.surface, space, body)
 
 
 @kernel

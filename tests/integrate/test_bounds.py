@@ -137,3 +137,45 @@ def peek(core, surfaces):
 
     scene = build(core.experiment(1, surfaces=surfaces))
     return scene, bounds_of(scene.bodies[0], np.array([np.inf, -np.inf]))
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("D", [1, 2, 3])
+def test_repair_against_sums_over_all_particles(D):
+    """Some particles of a body at a mirror are too hot: what each receives, by the sums of the module's head over every particle and node."""
+    from mpm.boundary import CONTACT, SLIP
+    from mpm.integrate.bounds import FIELDS, repair
+    from mpm.materials.laws import Constant
+    from mpm.state import PAD, Line, Particles, Plane, Thermal, Volume
+    from mpm.transfer import CHUNK, gather_scalar, scatter_scalar
+
+    h, cells, N, rng = 0.1, 10 if D < 3 else 6, 300, np.random.default_rng(5)
+    space, size = (Line, Plane, Volume)[D - 1](h, *[cells + 1 + 2 * PAD] * D), cells + 1 + 2 * PAD
+    x, m, theta = h * (0.1 + (cells - 1) * rng.random((N, D))), 1 + rng.random(N), -1 - rng.random(N)
+    hot = np.flatnonzero(np.all(x < 0.3 * h * cells, axis=1))
+    theta[hot[::2]] = 0.5
+    walls, nodes, zero = np.full((3, 2), CONTACT), np.zeros((FIELDS, size**D)), np.zeros((D, CHUNK))
+    walls[0, 0] = SLIP
+    thermal = Thermal(theta.copy(), np.zeros((N, D)), 300.0, Constant(1.0), Constant(2.0))
+    moved, left = repair(space, Particles(x, *np.zeros((4, N)), m, m), thermal, nodes, walls, 0.0, 1.0)
+
+    e, r, E, R = np.maximum(2 * m * theta, 0), np.maximum(-2 * m * theta, 0), np.zeros(size**D), np.zeros(size**D)
+    for p in range(N):
+        scatter_scalar(space, x, p, 1, e[p : p + 1], zero, zero, E)
+        scatter_scalar(space, x, p, 1, r[p : p + 1], zero, zero, R)
+    E, R = E.reshape([size] * D), R.reshape([size] * D)
+    for k in range(1, PAD + 1):  # what lies behind the mirror counts before it, and is seen there
+        E[PAD + k] += E[PAD - k]
+        R[PAD + k] += R[PAD - k]
+    share = np.where(R > 0, np.minimum(1, E / np.where(R > 0, R, 1)), 0)
+    for k in range(1, PAD + 1):
+        share[PAD - k] = share[PAD + k]
+    value, slope = np.zeros(1), np.zeros((D, 1))
+    taken = np.zeros(N)
+    for p in range(N):
+        gather_scalar(space, x, p, 1, share.ravel(), value, slope, np.zeros((D, 1)))
+        taken[p] = r[p] * value[0]
+    rest = (e.sum() - taken.sum()) / (r.sum() - taken.sum())
+    expected = np.where(e > 0, 0.0, theta + (taken + rest * (r - taken)) / (2 * m))
+    assert left == 0.0 and moved == pytest.approx(e.sum(), rel=1e-13) and not nodes.any() and 0 < np.count_nonzero(taken) < N
+    assert thermal.theta == pytest.approx(expected, abs=1e-13)
