@@ -169,3 +169,8 @@ def radius_holding(share: float, r, V) -> float:
     order = np.argsort(r)
     inside = np.cumsum(V[order]) - 0.5 * V[order]
     return float(np.interp(share * np.sum(V), inside, r[order]))
+
+
+def volume_ratios(names, bodies) -> dict[str, float]:
+    """The volume of each body now over what it was [-]."""
+    return {name: float(np.average(body.particles.J, weights=body.particles.V0)) for name, body in zip(names, bodies, strict=True)}

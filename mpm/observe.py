@@ -22,6 +22,7 @@ from mpm.diagnostics import (
     strains,
     stresses,
     thermal_pressure,
+    volume_ratios,
 )
 from mpm.error import Errors
 from mpm.fields import axis_names, cauchy, grid_fields, motion_of, particle_fields
@@ -272,7 +273,7 @@ class Recorder:
         series = {name: np.array(values) for name, values in self.series.items()}
         finals = {name: float(values[-1]) for name, values in series.items()} | self.crossed
         facts = dict(scene.facts, binds=max(clock.bound, key=clock.bound.get, default=""), bound_steps=clock.bound, heat_steps=clock.heat_steps,
-                     particles=sum(len(body.particles.m) for body in scene.bodies))  # fmt: skip
+                     particles=sum(len(body.particles.m) for body in scene.bodies), volume_ratios=volume_ratios(scene.names, scene.bodies))  # fmt: skip
         if clock.implicit:
             facts |= {"heat_steps_implicit": clock.implicit, "heat_iterations": clock.iterations}
         if scene.repair:

@@ -1,6 +1,6 @@
 """Review: what of a run's records a careful user wants to know, as warnings (mpm.warned). What only a running scene can see is warned of by mpm.guards.
 
-volume    at the end the whole volume is off its start by more than VOLUME beyond what expansion explains; not where loads or moving tools press
+volume    at the end the volume of a body is off its start by more than VOLUME beyond what expansion explains; not where loads or moving tools press
 heat      heat content and heat taken in disagree by more than HEAT of the larger, or of what the spread of temperatures holds; or PIC, or
           FLIP's share of it, conducts by itself more than HEAT of what the material does: R0 alpha h^2/(4 dt) (docs/physics.md 3)
 depth     heat that a surface exchanges, or a body that is touched, reaches less than DEPTH cells deep, where the body resists (beta depth/kappa over RESISTS):
@@ -14,7 +14,7 @@ probe     a probe has no value
 step      steps are shorter than `time.step` says by more than SHORTER, cut to end at output times or at heat steps
 edge      material comes within a cell of a side of the domain that `walls` does not name: a wall without friction stands there
 near      bodies that do not move lie less than a cell apart, and do not touch
-late      what acts `from` a time on begins with the end of the run or after it
+late      what acts `from` a time on begins with the end of the run or after it; or all of a measured curve lies behind the end
 ring      between two explicit heat steps sound passes through a body that expands and flows, and what one step adds is more than RINGS of its yield stress: it
           rings after each, and flows too far. The loaf is 1.6 % too low with 4.2 passages a step, 0.4 % with 0.4 (docs/accuracy.md)
 bend      an elastic body SLENDER times as long as it is thick, held at a wall, moves across its length by more than BENDS cells in the updated frame, where
@@ -56,17 +56,17 @@ def review(experiment: Any, run: Run) -> list[str]:
     return [warning(kind, said) for kind, look in LOOKS.items() for said in look(experiment, run)]
 
 
-def explained(experiment: Any, run: Run) -> tuple[float, float]:
-    """Smallest and largest volume ratio that expansion gives at the temperatures of the run."""
-    found = [0.0]
-    for material in experiment.materials.values():
-        if material.expansion is not None:
-            law = elastic_law(material.elastic)
-            law = getattr(law, "one", law)  # moduli that follow temperature: gamma follows them
-            slope = stress_temperature_modulus(material.expansion, law) / (law.lam + 2 * law.mu / 3)
-            for name in ("temperature_min", "temperature_max"):
-                reached = np.minimum(run.series[name], getattr(material.expansion, "set", np.inf))
-                found += (slope * (reached - material.expansion.reference)).tolist()
+def explained(experiment: Any, run: Run, name: str) -> tuple[float, float]:
+    """Smallest and largest volume ratio that expansion gives a body at the temperatures of the run."""
+    material, found = experiment.materials[experiment.bodies[name].material], [0.0]
+    if material.expansion is None:
+        return 1.0, 1.0
+    law = elastic_law(material.elastic)
+    law = getattr(law, "one", law)  # moduli that follow temperature: gamma follows them
+    slope = stress_temperature_modulus(material.expansion, law) / (law.lam + 2 * law.mu / 3)
+    for series in ("temperature_min", "temperature_max"):
+        reached = np.minimum(run.series[series], getattr(material.expansion, "set", np.inf))
+        found += (slope * (reached - material.expansion.reference)).tolist()
     return float(np.exp(min(found))), float(np.exp(max(found)))
 
 
@@ -76,15 +76,13 @@ def extents(experiment: Any, run: Run) -> dict[str, np.ndarray]:
 
 
 def volume(experiment: Any, run: Run) -> Iterator[str]:
-    if "volume_total" not in run.series:
-        return
-    begun = run.series["volume_total"][0] + run.series.get("volume_inflow", np.zeros(1))[-1]
-    ratio, (least, most) = float(run.series["volume_total"][-1] / begun), explained(experiment, run)
     moving = any(getattr(tool.motion, key) is not None for tool in experiment.tools.values() for key in ("velocity", "path", "force"))
     pressed = moving or any(load.traction is not None for load in experiment.loads)
-    for share, word in ((0.0 if pressed else 1 - ratio / least, "lost"), (ratio / most - 1, "gained")):
-        if share > VOLUME:
-            yield f"{100 * share:.0f} % of the volume is {word} by the end, beyond what expansion explains"
+    for name, ratio in run.facts.get("volume_ratios", {}).items():
+        least, most = explained(experiment, run, name)
+        for share, word in ((0.0 if pressed else 1 - ratio / least, "lost"), (ratio / most - 1, "gained")):
+            if share > VOLUME:
+                yield f"{100 * share:.0f} % of the volume of {name} is {word} by the end, beyond what expansion explains"
 
 
 def joules(experiment: Any) -> str:
@@ -258,6 +256,9 @@ def late(experiment: Any, run: Run) -> Iterator[str]:
         for entry, where in ((tool, ""), (tool.motion, ".motion")):
             if (begins := getattr(entry, "from")) >= end:
                 yield f"tools.{name}{where} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
+    for name, curve in experiment.output.measured.items():
+        if curve.samples and min(row[0] for row in curve.samples) > end * (1 + 1e-9):
+            yield f"all that was measured for {name} lies behind the end of the run at {end:.4g} s: it has no misfit"
 
 
 def step(experiment: Any, run: Run) -> Iterator[str]:

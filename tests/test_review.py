@@ -239,8 +239,27 @@ def test_expansion_explains_volume(core):
     experiment = core.experiment(1, {"gamma": 0.5, "kappa": 2.0})
     run = mpm.run_point(experiment)
     run.series["temperature_max"] = run.series["temperature_max"] + 10.0
-    assert explained(experiment, run) == (1.0, pytest.approx(np.exp(0.5 * 10 / (3 + 4 / 3))))
-    run.series["volume_total"] = run.series["volume_total"] * np.linspace(1.0, 3.1, len(run.times))
+    assert explained(experiment, run, next(iter(experiment.bodies))) == (1.0, pytest.approx(np.exp(0.5 * 10 / (3 + 4 / 3))))
+    run.facts["volume_ratios"] = {name: 3.1 for name in run.facts["volume_ratios"]}
     assert kinds(review(experiment, run)) == ()
-    run.series["volume_total"] = run.series["volume_total"] * np.linspace(1.0, 1.2, len(run.times))
+    run.facts["volume_ratios"] = {name: 3.1 * 1.2 for name in run.facts["volume_ratios"]}
     assert kinds(review(experiment, run)) == ("volume",)
+
+
+@pytest.mark.plain
+def test_a_small_body_that_collapses_beside_a_large_one_is_told():
+    """A tenth of the material loses half of its volume: a twentieth of the whole."""
+    solids = {"solid": SOLID, "soft": SOLID | {"flow": {"ellipse": {"M": 0.01, "p0": 0.3, "eta": 1.0}}}}
+    box = {"a": ((0.0, 0.5), "soft"), "b": ((1.5, 6.5), "solid")}
+    bodies = {name: {"shape": {"box": {"lower": [low], "upper": [high]}}, "material": solid} | WARM for name, ((low, high), solid) in box.items()}
+    run = mpm.run_point(scene(0.0, 4.0, gravity=-0.5, bodies=bodies, materials=solids, output={"every": 1.0}, time={"end": 10.0}))
+    told = [text for text in run.facts["warnings"] if text.startswith("volume")]
+    assert run.outcome.ok and [text.split()[6] for text in told] == ["a"] and run.facts["volume_ratios"]["b"] > 0.9
+
+
+@pytest.mark.parametrize(("end", "told"), [(2.0, True), (4.0, False)])
+def test_a_measured_curve_that_the_run_does_not_reach_is_told(end, told):
+    """Its misfit has no value; where some of it is reached, that is compared."""
+    measured = {"tip": {"samples": [[3.0, 301.0], [5.0, 302.0]]}}
+    run = mpm.run_point(scene(0.0, 4.0, time={"end": end}, output={"every": 0.5, "probes": {"tip": [3.95]}, "measured": measured}))
+    assert np.isnan(run.finals["misfit_tip"]) == told and ("late" in kinds(run.facts["warnings"])) == told

@@ -11,6 +11,7 @@ Further files
     chart             what `mpm chart` draws
     contacts          pairs of bodies that meet
     curves            curves in CSV files as laboratories and bakers write them
+    curve_units       units of their columns
     exact             exact solutions of moving bodies, and of the ring
     exact_heat        exact solutions of heat that a run may be compared with, beside those in config.output
     examples          an example of every key

@@ -44,24 +44,39 @@ def undrawn(experiment: Any, root: Node) -> list[str]:
 
 
 def temperatures(experiment: Any) -> Iterator[tuple[Path, Quantity]]:
-    """Paths of the config that hold a quantity: in its sections, and in what its sweep varies."""
+    """Paths of the config that hold a quantity: in its sections, and in what its sweep and its fit vary."""
     for path, slot in leaves(ROOT, experiment):
-        if slot.quantity is not None and path[0] != "sweep":
+        if slot.quantity is not None and path[0] not in ("sweep", "fit"):
             yield path, slot.quantity
-    if experiment.sweep is None:
-        return
-    names = Names(experiment)
-    for path, name in varied(experiment.sweep):
+    meant = spoken(experiment)
+    yield from ((("parameters", name, "value"), quantity) for name, quantity in meant.items())
+    places = [*varied(experiment)]
+    names = Names(experiment) if places else None
+    for path, name in places:
         try:
-            quantity = names.resolve(name)[1].quantity
+            quantity = meant.get(name) or names.resolve(name)[1].quantity
         except UnknownName:
-            continue  # told when the sweep is planned
+            continue  # told when the sweep or the fit is planned
         if quantity is not None:
             yield path, quantity
 
 
-def varied(sweep: Any) -> Iterator[tuple[Path, str]]:
-    """Where each parameter's values stand."""
+def spoken(experiment: Any) -> dict[str, Quantity]:
+    """What named parameters without a unit are taken for where they stand alone: `temperature: =start`."""
+    found = {}
+    for path, slot in leaves(ROOT, experiment):
+        name = experiment.formulas.get(".".join(map(str, path)), "")
+        if slot.quantity is not None and name in experiment.parameters and not experiment.parameters[name].unit:
+            found[name] = slot.quantity
+    return found
+
+
+def varied(experiment: Any) -> Iterator[tuple[Path, str]]:
+    """Where each parameter's values stand, of a sweep and of a fit."""
+    if (fit := experiment.fit) is not None:
+        yield from ((("fit", "parameters", name), name) for name in fit.parameters)
+    if (sweep := experiment.sweep) is None:
+        return
     yield from ((("sweep", "axes", name), name) for name in sweep.axes)
     for form in ("zip", "points"):
         yield from (((("sweep", form, index, name)), name) for index, entry in enumerate(getattr(sweep, form)) for name in entry)

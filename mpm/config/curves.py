@@ -21,15 +21,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mpm.config.headers import BRACKET, DAYS, SHORT, TIMES, Unreadable, column, fields, header, is_export, seconds_of, unit_of, units_of, with_units
+from mpm.config.curve_units import conversion
+from mpm.config.headers import DAYS, SHORT, TIMES, Unreadable, column, fields, header, is_export, seconds_of, unit_of, with_units
 from mpm.config.problems import brief, listed
 
 DATE = r"(?:(?P<date>\d{4}[-/]\d{2}[-/]\d{2}|\d{1,2}[./]\d{1,2}[./](?:\d{4}|\d{2})),?[T ]\s*)?"
 CLOCK = re.compile(DATE + r"(?P<hour>\d{1,3}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d+)?))?(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
                    r"(?P<zone>Z|[+-]\d{2}:?\d{2})?")  # fmt: skip
 SLASHED = re.compile(r"(\d{1,2})/(\d{1,2})/\d{2,4}\b")
-DEGREES = {f"{word}{unit}": f"deg{unit.upper()}" for unit in "cf" for word in ("", "deg ", "deg. ", "degree ", "degrees ")}  # as people write them in a header
-DEGREES |= {"℃": "degC", "℉": "degF", "celsius": "degC", "fahrenheit": "degF", "degrees celsius": "degC", "degrees fahrenheit": "degF"}
 LETTERS = set("°ºµ²³äöüÄÖÜßéèàç".encode("cp1252"))  # of files that a spreadsheet wrote in Windows-1252
 MOST_BYTES, MOST_ROWS = 64 * 2**20, 100_000  # of a file; of its curve, which every point carries
 
@@ -259,31 +258,3 @@ class RowReader:
             allowed = "1000 or 1.000, or semicolons between the fields" if thousands else "a number"
             raise Unreadable(number, f"{name} is no finite number: {brief(text)}", allowed)
         return found
-
-
-def conversion(head: int, name: str, units: str, given: str, key: str, like: str | None = None) -> Callable[[float], float]:
-    """From numbers of a column to SI: a function of one number. `like`: the unit of the values that these are standard errors of."""
-    from mpm.config.units import UnitError, convert
-
-    difference = like is not None
-    told = [unit for unit in ([given] if given else [*units_of(name), like]) if unit]
-    if not told and units != "1":
-        raise Unreadable(head, f"the column {name!r} tells no unit", f"a name that ends in one, as {name}_degC, or `unit: degC`" if units == "K" else
-                         f"a name with one of the dimension of {units}, as {name} [{units}], or `unit: {units}`", key)  # fmt: skip
-    wrong = None
-    for unit in told or ["1"]:
-        unit = DEGREES.get(re.sub("[°º˚]", "", unit).strip().lower(), unit) if units == "K" else "1" if unit == "-" else unit
-        try:
-            zero, one = (convert(f"{k} {unit}", units, "value", difference) for k in (0, 1))
-            break
-        except UnitError as error:
-            wrong = wrong or error
-    else:
-        if units == "1" and not given and not BRACKET.search(name):  # `lateral_strain` ends in no unit
-            return lambda number: number
-        force = ", as gf where a force is told in grams" if units == "N" else ""
-        words = f"the unit of the column {name!r}: {wrong}"
-        raise Unreadable(head, words, f"a unit of the dimension of {units}{force}", "unit" if given else key) from None
-    if unit in ("degC", "°C", "K", "kelvin"):  # exact: 20 degC is 20 + 273.15
-        return lambda number: number + zero if not difference else number
-    return lambda number: number * (one - zero) + zero

@@ -40,8 +40,9 @@ class Names:
         surfaces = experiment.surfaces if isinstance(experiment.surfaces, tuple) else ()
         declared = experiment.parameters if isinstance(experiment.parameters, dict) else {}
         self.declared: dict[str, Path] = {name: ("parameters", name, "value") for name in declared}
+        differences = self.differences() if declared else set()
         for name, path in self.declared.items():
-            self.slots[path], self.spoken[path] = slot_of(name, declared[name]), f"parameters.{name}"
+            self.slots[path], self.spoken[path] = slot_of(name, declared[name], name in differences), f"parameters.{name}"
             self.tails[(name,)][path] = self.tails[("parameters", name)][path] = None
         models = [(index, surface) for index, surface in enumerate(surfaces) if isinstance(surface, Model)]
         called = {index: named for index, surface in models if isinstance(named := getattr(surface, "name", None), str)}
@@ -56,6 +57,12 @@ class Names:
             for form in forms:
                 for start in range(len(form)):
                     self.tails[form[start:]][path] = None
+
+    def differences(self) -> set[str]:
+        """Named parameters that stand alone where a difference of temperatures does."""
+        formulas = self.experiment.formulas if isinstance(self.experiment.formulas, dict) else {}
+        slots = ((text, ROOT.walk(tuple(int(word) if word.isdigit() else word for word in path.split(".")))) for path, text in formulas.items())
+        return {text for text, slot in slots if slot is not None and slot.quantity is not None and slot.quantity.difference and slot.quantity.unit == "K"}
 
     def resolve(self, name: str) -> tuple[Path, Slot]:
         """The path and slot that a name stands for; UnknownName lists what would do."""

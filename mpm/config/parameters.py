@@ -7,11 +7,13 @@ A point of a sweep carries numbers alone, so that two configs that come to the s
 parameter set them anew (config.vary). Formulas reckon in SI. A name alone must have the dimension of its place; of longer formulas it is not checked.
 """
 
+import math
+from dataclasses import replace
 from typing import Any
 
-from pydantic import model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
-from mpm.config.base import Model, doc
+from mpm.config.base import Model, doc, problem
 from mpm.config.condition import ConditionError, Formula
 from mpm.config.explain import Finding
 from mpm.config.nodes import BAD, Node
@@ -41,6 +43,16 @@ class Named(Model):
                 given |= {"value": quantity(f"parameter in {unit}", unit).validate(text), "unit": unit}
         return given
 
+    @field_validator("unit")
+    @classmethod
+    def coherent(cls, unit: str, info: ValidationInfo) -> str:
+        """Numbers are in SI: 25 with `unit: mm` would be 25 m."""
+        right = unit_of(f"1 {unit}")
+        if unit in ("", "1") or (right and as_written(f"1 {unit}", right) == 1.0):
+            return unit
+        instead = f"value: {info.data.get('value', 1.0):g} {unit}, and no unit, or unit: {right}" if right else "a unit of SI, or no unit"
+        raise problem("unit", f"{unit!r} is no SI unit, and numbers are in SI", instead)
+
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict:
         return {"anyOf": [{"type": "number"}, {"type": "string"}, handler(schema)], "description": "a number, text with a unit, or {value, unit, label}"}
@@ -61,11 +73,22 @@ def unit_of(text: str) -> str:
         return ""
 
 
-def slot_of(name: str, named: Any) -> Slot:
-    """What a parameter's value may be, with its unit."""
+def as_written(text: str, unit: str, difference: bool = False) -> float:
+    """The number of a text in a unit; NaN where it is none."""
+    from mpm.config.units import UnitError, convert
+
+    try:
+        return convert(text, unit, "parameter", difference)
+    except UnitError:
+        return math.nan
+
+
+def slot_of(name: str, named: Any, difference: bool = False) -> Slot:
+    """What a parameter's value may be, with its unit. `difference`: it stands where a difference of temperatures does, and degC is one there."""
     unit = getattr(named, "unit", "")
     label = getattr(named, "label", "")
-    return Slot(float, (quantity(name, unit if isinstance(unit, str) else ""),), (label if isinstance(label, str) else "") or name)
+    may_be = replace(quantity(name, unit if isinstance(unit, str) else ""), difference=difference)
+    return Slot(float, (may_be,), (label if isinstance(label, str) else "") or name)
 
 
 def named(root: Node) -> None:
@@ -98,6 +121,7 @@ class Binder:
         self.values: dict[str, float] = {}
         self.units: dict[str, str] = {}
         self.wrong: set[str] = set()  # parameters that are told as such
+        self.scales: dict[str, str] = {}  # the texts of those that are temperatures on a scale, as 20 degC, and no differences
 
     def bind(self) -> Node:
         """A root with numbers alone, and `formulas`."""
@@ -156,6 +180,8 @@ class Binder:
                 self.wrong.add(name)
             else:
                 self.values[name] = number
+                if self.units[name] == "K" and isinstance(value.value, str) and as_written(value.value, "K", difference=True) != number:
+                    self.scales[name] = value.value
         return made
 
     def walk(self, node: Node, path: Path) -> Node:
@@ -198,21 +224,27 @@ class Binder:
             self.report(path, str(error), Formula.allowed, "", text)
             return Node(BAD, *placed(node))
         if wrong := self.mismatch(formula, path, text):
-            self.report(path, wrong, "a parameter of the dimension of its place", "", text)
+            self.report(path, wrong[0], wrong[1], "", text)
             return Node(BAD, *placed(node))
         self.formulas[".".join(map(str, path))] = text
         return Node(value, *placed(node))
 
-    def mismatch(self, formula: Formula, path: Path, text: str) -> str:
-        """What is wrong with the dimension of a name alone; empty where nothing is, or nothing is known."""
+    def mismatch(self, formula: Formula, path: Path, text: str) -> tuple[str, str] | None:
+        """What is wrong with the dimension of a name alone, and what would be right; None where nothing is, or nothing is known."""
         from mpm.config.units import alike
 
         slot = self.whole.walk(path)
         wanted = slot.quantity if slot is not None else None
         unit = self.units.get(text, "")
-        if text not in formula.names or not unit or wanted is None or path[0] == "parameters" or alike(unit, wanted.unit):
-            return ""
-        return f"{text} is in {unit}, and a {wanted.name}" + (f" in {wanted.unit}" if wanted.unit else "") + " is expected"
+        if text not in formula.names or not unit or wanted is None or path[0] == "parameters":
+            return None
+        if text in self.scales and wanted.difference and wanted.unit == "K":
+            said = f"{text} is a temperature ({self.scales[text]}), and a {wanted.name} is expected"
+            return said, f"parameters: {{{text}: {as_written(self.scales[text], 'K', difference=True):g} K}}"
+        if alike(unit, wanted.unit):
+            return None
+        said = f"{text} is in {unit}, and a {wanted.name}" + (f" in {wanted.unit}" if wanted.unit else "") + " is expected"
+        return said, "a parameter of the dimension of its place"
 
     def report(self, path: Path, message: str, allowed: str, suggestion: str, text: str) -> None:
         """What is wrong with a formula at a path."""

@@ -64,6 +64,7 @@ class Quantity:
         """The value as an SI float within bounds; raises the error that a user reads."""
         if type(value) is float and self.above < value <= self.most and self.least <= value and 1 / SCALE <= abs(value) <= SCALE:
             return value
+        plain = not isinstance(value, str)
         if isinstance(value, str):
             value = self.read(value)
         elif isinstance(value, bool) or not isinstance(value, int | float):
@@ -78,7 +79,7 @@ class Quantity:
         if math.isinf(number) and not (self.infinite and number > 0):
             raise problem("quantity", f"the {self.name} must be finite", self.wanted)
         if number <= self.above or number < self.least or number > self.most:
-            hint = f'"{value:g} degC"' if self.unit == "K" and not self.difference and number > -273.15 else ""
+            hint = f'"{value:g} degC"' if plain and self.unit == "K" and not self.difference and number > -273.15 else ""
             raise problem("quantity", f"the {self.name} is out of range", self.wanted, suggestion=hint)
         if number and not 1 / SCALE <= abs(number) <= (math.inf if self.infinite else SCALE):
             raise problem("quantity", f"the {self.name} is out of all scale", f"{'0, or ' * (self.above < 0)}{1 / SCALE:g} to {SCALE:g} [{self.unit or 1}]")

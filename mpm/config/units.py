@@ -17,7 +17,7 @@ from typing import Any
 TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 UNIT = re.compile(r"(?:[^\W\d]|[°%Ωµμ*/^ ·().⁻⁰¹²³⁴⁵⁶⁷⁸⁹]|(?:\*\*|\^)\s*-?\s*\d{1,2}(?!\d)|^1(?=/)){1,60}")
 PLAIN_POWER = re.compile(r"(?<=[^\W\d_])(-?\d{1,2})(?!\w)")  # m2, s-1: as datasets and UDUNITS write powers
-ALIKE = str.maketrans({"−": "-", "⋅": "·", "∙": "·", "\xa0": " ", "\u202f": " "})
+ALIKE = str.maketrans({"−": "-", "⋅": "·", "∙": "·", "\xa0": " ", "\u202f": " ", "º": "°", "˚": "°", "℃": "°C", "℉": "°F"})
 KNOWN = ("m cm mm um km K degC degF s ms min h day kg g m/s mm/s Pa kPa MPa GPa bar J kJ W kW N W/m/K W/m**2/K J/kg/K kJ/kg/K kg/m**3 g/cm**3 "
          "J/kg Pa*s mPa*s 1/K Pa/K rad deg rad/s rpm m/s**2 %").split()  # fmt: skip
 OFFSET = {"degree_Celsius": "delta_degree_Celsius", "degree_Fahrenheit": "delta_degree_Fahrenheit"}
@@ -56,7 +56,7 @@ def article(noun: str) -> str:
 
 
 SI = ("m", "s", "K", "kg", "Pa", "W/m/K", "W/m**2/K", "J/kg/K", "kg/m**3", "Pa*s", "J/kg", "J", "W", "N", "W/m**2", "W/m**3", "m/s", "m/s**2", "1/s", "1/K",
-      "Pa/K", "m**2", "m**3", "m**2/s", "rad")  # fmt: skip
+      "Pa/K", "m**2", "m**3", "m**2/s")  # fmt: skip
 
 
 @functools.lru_cache(4096)
@@ -70,14 +70,15 @@ def si(text: str) -> str:
             wrong = error
         else:
             return unit
-    units, found = registry(), TEXT.fullmatch(text)
+    units, parts = registry(), TEXT.fullmatch(text)
     try:
-        given = units.parse_units(PLAIN_POWER.sub(r"**\1", found[2].translate(ALIKE))) if found and UNIT.fullmatch(found[2]) else None
+        given = units.parse_units(PLAIN_POWER.sub(r"**\1", parts[2].translate(ALIKE))) if parts and UNIT.fullmatch(parts[2]) else None
     except Exception:  # as in `convert`
         given = None
-    if given is None or given.dimensionless:
+    found = "" if given is None else f"{units.Quantity(1, given).to_base_units().units:~}".replace(" ", "")
+    if not found:  # a share, as %
         raise wrong
-    return f"{units.Quantity(1, given).to_base_units().units:~}".replace(" ", "")
+    return found
 
 
 def alike(one: str, two: str) -> bool:
@@ -106,7 +107,7 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
     try:
         source = units.parse_units("1" + given if given[0] == "/" else given)
     except Exception:  # pint lets through whatever its tokenizer and evaluator raise on broken text
-        near = difflib.get_close_matches(given, KNOWN, 1, 0.6)
+        near = [unit for unit in KNOWN if unit.lower() == given.lower()] or difflib.get_close_matches(given, KNOWN, 1, 0.6)
         raise UnitError(f"unknown unit {found[2]!r}", suggestion=slip or (f'"{found[1]} {near[0]}"' if near else "")) from None
     if difference and str(source) in OFFSET:
         source = units.parse_units(OFFSET[str(source)])
@@ -114,7 +115,7 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
     if source.dimensionality != target.dimensionality:
         said = NAMES.get(str(source.dimensionality), "")
         said = f"is {article(said)} {said}" if said else f"has the dimension {source.dimensionality}"
-        scale = f'"{found[1]} deg{given}"' if given in ("C", "F") and unit == "K" else slip
+        scale = f'"{found[1]} deg{given[-1]}"' if re.fullmatch(r"(deg\.? ?|° )?[CF]", given) and unit == "K" else slip
         raise UnitError(f"{text!r} {said}, but {article(name)} {name} is expected", suggestion=scale)
     if unit == "K" and not difference and "delta_" in str(source):
         said = f"{text!r} is a temperature difference, but {article(name)} {name} is expected"

@@ -16,7 +16,7 @@ from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.course import course
-from mpm.scene.exchange import pieces_of
+from mpm.scene.exchange import pieces_of, refuse_absent
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit, kinks
 from mpm.scene.inflow import by_owner, inflow, nozzle, sample_column, warmth
@@ -174,6 +174,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
     rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
     if rigid:
         raise SceneError(("bodies", rigid[0]), f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
+    refuse_absent(experiment)
     scale, experiment = experiment.time.scale, hurried(experiment)
     space = grid_space(experiment)
     zero = next(iter(experiment.bodies.values())).temperature

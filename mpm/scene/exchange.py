@@ -10,8 +10,10 @@ from mpm.integrate.surroundings import Act, HotWall, Surroundings
 from mpm.materials import table, value
 from mpm.scene.menus import acting, known
 from mpm.scene.refusal import SceneError
-from mpm.scene.shapes import shape
+from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
+
+COARSE, NOTHING = 4, 1e-9  # cells along each extent in which a side is looked for; of the surface
 
 
 def table_over_time(model):
@@ -83,6 +85,22 @@ def must_conduct(name: str, conducts: bool, exchanges: bool) -> None:
     """SceneError where the exchange depends on a surface temperature that kappa = 0 leaves behind (config/rules_scene.py tells it of a single point)."""
     if exchanges and not conducts:
         raise SceneError(("surfaces",), f"kappa of {name} is 0, so its surface cannot pass heat inwards: give it a conductivity, or take the exchange away")
+
+
+def refuse_absent(experiment) -> None:
+    """SceneError for what is to act on a side that its body does not have, as the inner one of a full cylinder: it would do nothing, and say nothing."""
+    axisymmetric, plane = experiment.grid.dimension == "axisymmetric", experiment.grid.dimension == 2
+    for section in ("surfaces", "loads"):
+        for index, entry in enumerate(getattr(experiment, section)):
+            if entry.side == "all" or (section == "loads" and entry.traction is None):
+                continue
+            outline = shape(experiment.bodies[entry.of].shape, experiment.grid.dimension)
+            lower, upper = outline.bounds()
+            lower = np.maximum(lower, [0.0, -np.inf]) if axisymmetric else lower
+            rim = cut_quadrature(outline, [np.linspace(*ends, COARSE + 1) for ends in zip(lower, upper, strict=True)], 2)[1]
+            area = rim.w * rim.x[:, 0] if axisymmetric else rim.w
+            if not area[outline.faces(rim, entry.side, plane)].sum() > NOTHING * area.sum():
+                raise SceneError((section, index, "side"), f"no part of the surface of {entry.of} is its side {entry.side!r}: nothing would act there")
 
 
 def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, meets: bool = False):

@@ -8,7 +8,7 @@ from mpm.heat.programmes import Parts, bounds, changes
 from mpm.materials import value
 from mpm.observe import merged, near
 from mpm.scene.build import SceneError, output_times, watch
-from mpm.scene.exchange import most, must_conduct, rates, robin
+from mpm.scene.exchange import most, must_conduct, rates, refuse_absent, robin
 from mpm.scene.law import law
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.scene.sources import resting
@@ -28,6 +28,7 @@ def rigid_bodies(experiment, field=None) -> list:
         raise SceneError(("method", "locking"), "it is for bodies that move, and none of these has `elastic`; leave it out")
     if type(experiment.method.bounds).kind != "auto":
         raise SceneError(("method", "bounds"), "it is for bodies that move, and none of these has `elastic`; method.rigid: bounded keeps bounds here")
+    refuse_absent(experiment)
     bodies = []
     for name, body in experiment.bodies.items():
         material = experiment.materials[body.material]

@@ -220,8 +220,6 @@ def loads(experiment, name: str, space, surface, n: int, folds, dtype) -> tuple[
     x, area, force, pressure, pull, outline = [], [], [], [], [], shape(experiment.bodies[name].shape, experiment.grid.dimension)
     for entry in tractions:
         pieces = outline.faces(surface, entry.side, experiment.grid.dimension == 2)
-        if not pieces.any():
-            raise SceneError(("loads", experiment.loads.index(entry)), f"{name} has no surface on its side {entry.side!r}: nothing would be loaded")
         one, zero = by_area(entry.traction, surface.normal[pieces]), np.zeros((pieces.sum(), D))
         x.append(surface.x[pieces])
         area.append(surface.w[pieces, None] * surface.normal[pieces])

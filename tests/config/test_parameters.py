@@ -1,5 +1,7 @@
 """Named parameters: used by name or formula, overridden, swept, and told where they are wrong."""
 
+import math
+
 import pytest
 
 import mpm
@@ -97,6 +99,14 @@ def test_entries_of_lists_are_named_by_dots_or_brackets(tmp_path, form):
         ("thickness: 25 mm", "thickness: 25 mmm", 2, "unknown unit 'mmm'"),
         ("hot: 190 degC", "sin: 190 degC\n  hot: 460", 5, "'sin' means something else in formulas"),
         ("outside: =hot", "outside: '=log(hot - 1000)'", 9, "the formula fails"),
+        ("hot: 190 degC", "hot: {value: 190, unit: degC}", 5, "'degC' is no SI unit, and numbers are in SI; allowed: value: 190 degC"),
+        ("thickness: 25 mm", "thickness: {value: 25, unit: mm}", 2, "allowed: value: 25 mm, and no unit, or unit: m"),
+        (
+            "alpha: 2000",
+            "alpha: {bump: {base: 2000, heat: 1, at: 400, width: =hot}}",
+            8,
+            "hot is a temperature (190 degC), and a temperature difference is expected (given '=hot'); allowed: parameters: {hot: 190 K}",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_at_its_place(tmp_path, old, new, line, words):
@@ -105,3 +115,16 @@ def test_what_is_wrong_is_told_at_its_place(tmp_path, old, new, line, words):
     assert f"slab.yaml:{line}:" in str(caught.value)
     assert words in str(caught.value)
     assert len(caught.value.problems) == 1
+
+
+def test_degrees_of_a_named_difference_are_kelvin(tmp_path):
+    """20 degC as the width of a bump is 20 K, in a sweep by name too."""
+    text = SLAB.replace("alpha: 2000", "alpha: {bump: {base: 2000, heat: 1, at: 400, width: =wide}}").replace("parameters:\n", "parameters:\n  wide: 5 K\n")
+    points = plan(scene(tmp_path, text + "sweep: {axes: {wide: [20 degC, 30 delta_degC, 40]}}\n"))
+    assert [case.experiment.materials["unit"].heat.alpha.width for case in points.cases] == [20.0, 30.0, 40.0]
+
+
+@pytest.mark.parametrize(("text", "value", "unit"), [("5 %", 0.05, ""), ("180 deg", math.pi, "rad"), ("3 mm/m", 0.003, ""), ("60 rpm", 2 * math.pi, "1/s")])
+def test_a_share_is_no_angle(tmp_path, text, value, unit):
+    found = scene(tmp_path, SLAB.replace("thickness: 25 mm", f"thickness: 25 mm\n  more: {text}")).parameters["more"]
+    assert (found.value, found.unit) == (pytest.approx(value), unit)

@@ -66,7 +66,9 @@ def refusal(quantity, value):
     return caught.value.context
 
 
-@pytest.mark.parametrize(("value", "suggestion"), [(-5.0, '"-5 degC"'), (0.0, '"0 degC"'), (-273.0, '"-273 degC"'), (-274.0, "")])
+@pytest.mark.parametrize(
+    ("value", "suggestion"), [(-5.0, '"-5 degC"'), (0.0, '"0 degC"'), (-273.0, '"-273 degC"'), (-274.0, ""), ("-300 degC", ""), ("0 K", "")]
+)
 def test_a_temperature_below_zero_was_meant_in_degrees_where_there_are_such(value, suggestion):
     found = refusal(MENU["Temperature"], value)
     assert "out of range" in found["message"] and found["suggestion"] == suggestion

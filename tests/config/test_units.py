@@ -14,6 +14,8 @@ from mpm.config.units import UnitError, convert
     ("text", "unit", "difference", "value"),
     [
         ("190 degC", "K", False, 463.15),
+        ("190 ℃", "K", False, 463.15),
+        ("190 ºC", "K", False, 463.15),
         ("190 °C", "K", False, 463.15),
         ("1.5 K", "K", False, 1.5),
         ("1.5 degC", "K", True, 1.5),
@@ -54,6 +56,8 @@ def test_conversion(text, unit, difference, value):
         ("5 s", "m", "is a time, but a length is expected", ""),
         ("2 mmm", "m", "unknown unit 'mmm'", '"2 mm"'),
         ("190 C", "K", "but a length is expected", '"190 degC"'),
+        ("190 deg C", "K", "but a length is expected", '"190 degC"'),
+        ("190 degc", "K", "unknown unit 'degc'", '"190 degC"'),
         ("five", "m", "does not begin with a number", ""),
         ("5", "m", "text without a unit", "5"),
         ("5 m**99999", "m", "is not a unit", ""),

@@ -190,6 +190,21 @@ def test_every_temperature_of_a_config_is_looked_at(tmp_path):
     assert sorted(places) == sorted([f"{heat}.kappa.table.temperature.0", f"{heat}.alpha.bump.at", *swept])
 
 
+def test_a_named_temperature_without_a_unit_is_looked_at(tmp_path):
+    file = tmp_path / "slab.yaml"
+    more = "parameters: {start: 20, wide: 5, warm: 20 degC, cold: 3 K}\nsweep: {axes: {start: [30, 40 degC]}}\n"
+    text = slab(temperature="=start", more=more).replace("alpha: 2000", "alpha: {bump: {base: 2, heat: 3, at: =warm, width: =wide}}")
+    file.write_text(text.replace("outside: 100 degC", "outside: =cold"))
+    assert [line.split(": ")[1] for line in cautions(load(file)) if "slab.yaml" in line] == ["parameters.start.value", "sweep.axes.start"]
+
+
+def test_a_range_to_fit_is_looked_at(tmp_path):
+    file = tmp_path / "slab.yaml"
+    curve = "measured: {c: {samples: [[3 s, 30 degC], [9 s, 40 degC]]}}, observables"
+    file.write_text(slab(more="fit: {parameters: {outside: [90, 500], kappa: {log: [0.1, 1]}}, data: [c]}\n").replace("observables", curve))
+    assert [line.split(": ")[1] for line in cautions(load(file))] == ["fit.parameters.outside"]
+
+
 def test_a_name_is_no_longer_than_a_variable_s_may_be(loaf):
     body, probe = "a" * 101, "p" * 70_000
     data = loaf | {"bodies": {body: loaf["bodies"]["loaf"]}, "output": {"probes": {probe: [0, "21.5 mm"]}}}

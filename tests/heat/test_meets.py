@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mpm.heat.exchange import STEFAN_BOLTZMANN, meet
-from mpm.heat.programmes import SAME, Parts, Sine, at, bounds, during, longest, spell, turns
+from mpm.heat.programmes import SAME, Parts, Sine, at, bounds, during, integral, longest, spell, turns
 from mpm.materials import table
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
 
@@ -68,3 +68,19 @@ def test_bounds_and_steps():
     assert bounds(Parts((2.0,), (wave, 600.0))) == (310.0, 600.0)
     assert longest(wave) == 0.025 and longest(ramp) == 0.125 and longest(7.0) == math.inf and longest(Parts((2.0,), (wave, ramp))) == 0.025
     assert at(wave, 0.1) == pytest.approx(350.0 - 40.0 * math.sin(math.pi / 2 + 0.1))
+
+
+@pytest.mark.parametrize(
+    "programme",
+    [
+        3.0,
+        table([1.0, 2.0, 5.0], [2.0, 6.0, -1.0]),
+        Sine(4.0, 3.0, 1.7, 0.4),
+        Parts((1.5, 4.0), (table([0.0, 9.0], [1.0, 7.0]), 5.0, Sine(1.0, 2.0, 3.0, 0.0))),
+    ],
+)
+@pytest.mark.parametrize(("begin", "end"), [(0.5, 6.0), (2.5, 3.0), (0.0, 1.2)])
+def test_integrals_are_sums_over_time(programme, begin, end):
+    n = 20_000
+    middles = begin + (end - begin) * (np.arange(n) + 0.5) / n
+    assert integral(programme, begin, end) == pytest.approx(sum(at(programme, t) for t in middles) * (end - begin) / n, rel=1e-3)

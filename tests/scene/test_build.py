@@ -97,3 +97,35 @@ def test_refused_with_advice(core):
 def test_exchange_without_conduction_is_refused(core):
     with pytest.raises(ConfigError, match="'solid' conducts no heat"):
         core.experiment(1, {"kappa": 0.0})
+
+
+TRIANGLE = {"polygon": {"vertices": [[0.5, 0.5], [1.5, 0.5], [1.0, 1.5]]}}
+DIAMOND = {"box": {"lower": [0.5, 0.5], "upper": [1.5, 1.5], "angle": "45 deg"}}
+BALL, CYLINDER = {"ball": {"centre": [0.0, 1.0], "radius": 0.5}}, {"cylinder": {"radius": 0.5, "height": 1.0, "base": [0.0, 0.5]}}
+PIPE = {"box": {"lower": [0.5, 0.5], "upper": [1.0, 1.5]}}
+
+
+@pytest.mark.parametrize(
+    ("dimension", "form", "side", "there"),
+    [(2, TRIANGLE, "top", False), (2, TRIANGLE, "bottom", True), (2, DIAMOND, "top", False), (2, DIAMOND, "left", True),
+     ("axisymmetric", CYLINDER, "inner", False), ("axisymmetric", BALL, "inner", False),
+     ("axisymmetric", PIPE, "inner", True), ("axisymmetric", CYLINDER, "outer", True)],
+)  # fmt: skip
+@pytest.mark.parametrize("acts", ["rigid", "moving", "traction"])
+def test_what_would_act_on_a_side_that_is_not_there_is_refused(dimension, form, side, there, acts):
+    """A flux on the top of a triangle that stands on its base did nothing, and the run was ok."""
+    import mpm
+    from mpm.runner import refuse
+
+    solid = {"density": 2.0, "heat": {"fourier": {"kappa": 1.0, "alpha": 1.5}}} | ({"elastic": {"hencky": {"E": 1.0, "nu": 0.3}}} if acts != "rigid" else {})
+    entry = {"of": "b", "side": side}
+    acting = {"loads": [entry | {"traction": {"pressure": 1e-3}}]} if acts == "traction" else {"surfaces": [entry | {"flux": {"q": 1.0}}]}
+    experiment = mpm.load({
+        "grid": {"dimension": dimension, "size": [2.0, 2.0], "cell": 0.25}, "bodies": {"b": {"shape": form, "temperature": 300, "material": "solid"}},
+        "materials": {"solid": solid}, "time": {"end": 1.0}, **acting,
+    })  # fmt: skip
+    if there:
+        return refuse(experiment)
+    with pytest.raises(SceneError, match=f"no part of the surface of b is its side '{side}'") as caught:
+        refuse(experiment)
+    assert caught.value.at == (next(iter(acting)), 0, "side")
