@@ -38,7 +38,8 @@ class Axis:
             values = np.array([str(value) for value in raw], dtype=object)
             label = words.compose(path or name, attrs.get("long_name", name), "")
             return cls(name, dim, values, label, label, "", False, True, np.arange(len(values), dtype=float))
-        named = str(attrs.get("long_name", "")).lower().startswith("temperature")  # a parameter of the user's own
+        long = str(attrs.get("long_name", "")).lower()
+        named = long.startswith("temperature") and "difference" not in long  # a parameter of the user's own
         scale = words.scale(raw, units, words.is_temperature_path(path) or named)
         values = scale(raw)
         log = log_spaced(values) and not scale.shift if log is None else bool(log and (values > 0).all())

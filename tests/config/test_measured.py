@@ -196,6 +196,7 @@ def test_the_export_of_an_eight_sensor_probe(tmp_path):
         ("minute,oven\n1,20\n", "value: oven", "curve.csv:1: the column 'oven' tells no unit; allowed: a name that ends in one, as oven_degC, or `unit: degC`"),
         ("minute,oven_mm\n1,20\n", "value: oven_mm", "is a length, but a value is expected"),
         ("Time,oven_degC\n1,20\n", "value: oven_degC", "curve.csv:2: Time is no clock time, and its column tells no unit: '1'"),
+        ("minute,oven_degF\n1,20\n", "value: oven_degF, unit: degC", "curve.csv:1: the column 'oven_degF' tells a unit of its own, and `unit` says degC"),
         ("minute,oven_degC\n1,20\n", "value: oven_degC, sigma: spread", "no such column: 'spread'"),
         ("minute,oven_degC\n1,20\n", "value: oven_degC, sigma: 2 mm", "is a length"),
         ("minute,oven_degC\n1,20\n", "value: oven_degC, of: mass.total", "'mass.total' is not recorded"),

@@ -53,6 +53,15 @@ def test_what_is_scaled(core):
     assert hurried(creep(core, 1.0)) == creep(core, 1.0)
 
 
+def test_books_close_on_what_is_shown(core):
+    """What the total loses, gravity's part with it, flow dissipates or transfers lose: also while motion holds what the fast clock lends it."""
+    run = mpm.run_point(creep(core, 100.0))
+    gone = run.series["energy_total"][0] - run.series["energy_total"]
+    off = gone + run.series["work_loads"] - run.series["dissipation_total"] - run.series["dissipation_transfer"]
+    assert run.outcome.ok and np.abs(off).max() < 1e-12 * np.abs(gone).max()
+    assert run.series["energy_ledger"] == pytest.approx(run.series["heat_ledger"] - run.series["dissipation_transfer"], abs=1e-12 * np.abs(gone).max())
+
+
 def test_velocities_leave_the_run_physical(core):
     data = core.config(1, time={"end": 0.5, "scale": 5.0})
     data["bodies"]["body"]["velocity"] = [0.02]
@@ -77,7 +86,9 @@ def test_energies_of_motion_leave_the_run_by_the_square_of_the_scale(core):
 
     series = {"energy_kinetic": np.array([50.0, 75.0]), "energy_elastic": np.array([1.0, 2.0]), "dissipation_total": np.zeros(2)}
     series |= {"energy_total": series["energy_kinetic"] + series["energy_elastic"], "velocity_max": np.array([5.0, 5.0])}
+    series |= {"dissipation_transfer": np.array([0.0, -26.0]), "energy_ledger": np.array([0.0, 26.0])}  # nothing works on it
     run = Run(outcome(COMPLETED), np.array([0.0, 1.0]), series, {}, steps=1, wall_time=0.0, facts={"warnings": []})
     after = physical(run, mpm.load(core.config(1, time={"end": 5.0, "scale": 5.0}, surfaces=[])))
     assert after.series["energy_kinetic"] == pytest.approx([2.0, 3.0]) and after.series["energy_total"] == pytest.approx([3.0, 5.0])
     assert after.series["velocity_max"] == pytest.approx([1.0, 1.0]) and after.times == pytest.approx([0.0, 5.0])
+    assert after.series["dissipation_transfer"] == pytest.approx([0.0, -2.0]) and after.series["energy_ledger"] == pytest.approx([0.0, 2.0])
