@@ -220,6 +220,9 @@ def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
         yield Finding((*at, 1), "the same body twice: a body does not meet itself", [name for name in known if name != item.between[0]], given=item.between[1])
     elif any(frozenset(other.between) == frozenset(item.between) for other in experiment.contacts[:index] if other is not MISSING):
         yield Finding(at, "this pair is named before", "one entry a pair", on_key=True)
+    elif item.conductance and (cold := [name for name in item.between if experiment.materials[known[name].material].heat is None]):
+        said = f"{cold[0]} has no heat law, so no heat passes between the two"
+        yield Finding(("contacts", index, "conductance"), said, f"a heat section in materials.{known[cold[0]].material}, or no conductance", on_key=True)
     elif moves(experiment):
         for key in ("from", "until"):
             if getattr(item, key) and item.welded is not None:

@@ -19,6 +19,7 @@ from mpm.scene.exchange import programme
 from mpm.scene.menus import wall_kind
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import cut_quadrature, shape
+from mpm.scene.still import insulator
 from mpm.scene.tools import refuse_tools
 from mpm.scene.weight import both_ways
 
@@ -115,6 +116,12 @@ def refuse_methods(experiment, meets: Meets) -> None:
             if type(one.heat.alpha).kind != "constant":
                 at = ("materials", experiment.bodies[names[of]].material, "heat", "fourier", "alpha")
                 raise SceneError(at, f"{both}, which is known for constant alpha only: a number, {cure}")
+    for index, pair in enumerate(experiment.contacts):
+        dull = [name for name in pair.between if experiment.materials[experiment.bodies[name].material].heat is not None and insulator(experiment, name)]
+        if pair.conductance and dull:
+            raise SceneError(
+                ("contacts", index, "conductance"), f"kappa of {dull[0]} is 0, so it can pass no heat on: give it a conductivity, or `conductance: 0`"
+            )
 
 
 def refuse_apart(experiment, outlines) -> None:

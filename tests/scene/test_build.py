@@ -129,3 +129,25 @@ def test_what_would_act_on_a_side_that_is_not_there_is_refused(dimension, form, 
     with pytest.raises(SceneError, match=f"no part of the surface of b is its side '{side}'") as caught:
         refuse(experiment)
     assert caught.value.at == (next(iter(acting)), 0, "side")
+
+
+def test_a_conductance_through_which_nothing_can_pass_is_refused():
+    """A body of kappa = 0 or without heat took in nothing, and the run was ok; without a conductance, or with one of 0, that is what was asked for."""
+    import mpm
+    from mpm.runner import refuse
+
+    def pair(conductance, kappa=0.0):
+        bodies = {name: {"shape": {"box": {"lower": [low], "upper": [low + 1.0]}}, "material": name} for name, low in (("a", 1.0), ("b", 2.0))}
+        heat = {"heat": {"fourier": {"kappa": kappa, "alpha": 1.5}}} if kappa is not None else {}
+        solid = {"density": 2.0, "elastic": {"hencky": {"E": 1.0, "nu": 0.3}}}
+        materials = {"a": solid | heat, "b": solid | {"heat": {"fourier": {"kappa": 1.0, "alpha": 1.5}}}}
+        data = {"grid": {"dimension": 1, "size": [4.0], "cell": 0.125}, "bodies": bodies, "materials": materials, "time": {"end": 1.0}}
+        return mpm.load(data | {"contacts": [{"between": ["a", "b"], "friction": 0.0} | ({"conductance": conductance} if conductance is not None else {})]})
+
+    for conductance, kappa in ((0.0, 0.0), (None, 0.0), (5.0, 1.0), (0.0, None)):
+        refuse(pair(conductance, kappa))
+    with pytest.raises(SceneError, match="kappa of a is 0") as caught:
+        refuse(pair(5.0))
+    assert caught.value.at == ("contacts", 0, "conductance")
+    with pytest.raises(ConfigError, match=r"contacts.0.conductance: a has no heat law"):
+        pair(5.0, None)
