@@ -30,6 +30,9 @@ def load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
 def gravity(experiment: Any) -> Iterator[Finding]:
     """One entry a direction; exact solutions of motion know one that stays as it is, and loads that do not end."""
     yield from vector(experiment, ("gravity",), experiment.gravity, "gravity")
+    if experiment.grid.dimension == "axisymmetric" and experiment.gravity and experiment.gravity[0] != 0:
+        said = "gravity in a round scene points along its axis, and the first number is along r"
+        yield Finding(("gravity", 0), said, "0, and the second number along z")
     if experiment.exact is None or experiment.exact.kind == "formulas":
         return
     if any(not isinstance(one, float) for one in experiment.gravity or ()):
