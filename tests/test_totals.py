@@ -115,3 +115,15 @@ def test_every_total_has_units_in_every_dimension():
             assert found.long_name.startswith(VARIABLES[name].long_name)
     assert turn("axisymmetric") == 2 * math.pi and {turn(d) for d in (0, 1, 2, 3)} == {1.0}
     assert describe("temperature_max", 2) == describe("temperature_max") and describe("heat_total", 0).units == "J/m3"
+
+
+def test_totals_over_swept_dimensions_say_of_what(tmp_path):
+    """J of an axisymmetric point and J/m of a plane one stand in one variable: its name says so."""
+    from mpm.sweep.cases import plan
+    from mpm.sweep.table import described, dimension_of
+
+    data = ball("axisymmetric") | {"sweep": {"axes": {"grid.dimension": [2, "axisymmetric"]}}}
+    assert dimension_of(plan(mpm.load(data))) is None and dimension_of(plan(mpm.load(ball(3)))) == 3
+    said = ", per metre of depth where grid.dimension is 2, per square metre where it is 1"
+    assert described("heat_total", ("dimension",), np.zeros(2)).attrs["long_name"].endswith(said)
+    assert not described("temperature_mean", ("dimension",), np.zeros(2)).attrs["long_name"].endswith(said)

@@ -12,7 +12,7 @@ from mpm.records.frames import Entries, Frame, Stream
 from mpm.records.large import Parts
 from mpm.records.netcdf import Array, Group
 from mpm.records.point import Record
-from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, components, describe
+from mpm.records.variables import OK, PENDING, SKIPPED, STATUS, components, describe, is_total
 from mpm.sweep.coordinates import fixed, planned
 from mpm.sweep.time_axis import places
 from mpm.sweep.time_columns import TimeColumns
@@ -34,7 +34,8 @@ def dimension_of(plan: Any) -> int | str | None:
 def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, probes: Any = (), **more: Any) -> Array:
     """An array with the units and the long name of the table, for scenes of one dimension; `probes` as in `records.variables.threshold`."""
     found = describe(name, dimension, probes)
-    return Array(dims, data, {"units": found.units, "long_name": found.long_name, **more})
+    apart = ", per metre of depth where grid.dimension is 2, per square metre where it is 1" if dimension is None and is_total(name) else ""
+    return Array(dims, data, {"units": found.units, "long_name": found.long_name + apart, **more})
 
 
 class Table:
