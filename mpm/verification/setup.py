@@ -32,7 +32,21 @@ def one_exchange(experiment, name: str, *sides: str) -> tuple[float, float]:
     beta, out = (entry.convection.beta, entry.convection.outside) if entry.fixed is None else (math.inf, entry.fixed.temperature)
     if not isinstance(out, float) or not isinstance(beta, float) or getattr(entry, "from") or entry.until is not None:
         raise ValueError("the exact solution needs a beta and a temperature outside that do not change over time")
+    by_itself(experiment, name)
     return beta, out
+
+
+def by_itself(experiment, name: str) -> None:
+    """ValueError where walls or tools exchange heat, or another body lies so near that it may."""
+    from mpm.scene.shapes import shape
+
+    if any(getattr(one, "heat", None) is not None for one in (*experiment.walls.values(), *experiment.tools.values())):
+        raise ValueError("the exact solution knows no hot walls and tools")
+    dimension = experiment.grid.dimension
+    boxes = {other: shape(body.shape, dimension).bounds() for other, body in experiment.bodies.items()} if dimension != 0 else {}
+    for other, (low, high) in boxes.items():
+        if other != name and all(np.maximum(low, boxes[name][0]) - np.minimum(high, boxes[name][1]) < experiment.grid.cell):
+            raise ValueError(f"the exact solution is of {name} by itself, and {other} lies beside it")
 
 
 def moved(experiment, point) -> np.ndarray:

@@ -67,7 +67,21 @@ def test_roots_are_ordered_and_solve_their_equation(biot):
             assert np.abs(residual(z)).max() < 1e-10 * (1 + biot)
 
 
+def beside(upper):
+    """The slab, and another body from its end or farther on."""
+    box = {"it": (0.5, 2.5), "other": (upper, 3.0)}
+    bodies = {name: {"shape": {"box": {"lower": [low], "upper": [high]}}, "temperature": 301.0, "material": "unit"} for name, (low, high) in box.items()}
+    return problem("slab", 1.0, bodies=bodies, exact={"robin_slab": {"body": "it"}})
+
+
+def on_a_hot_wall():
+    moves = {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}
+    return problem("slab", 1.0, materials={"unit": moves}, walls={"left": {"contact": {"heat": {"beta": 2, "temperature": 300}}}})
+
+
 REFUSED = {
+    "other lies beside it": lambda: beside(2.5),
+    "knows no hot walls": on_a_hot_wall,
     "needs a box": lambda: problem("slab", 1.0, dimension=2),
     "robin_cylinder needs": lambda: problem("cylinder", 1.0, dimension=1),
     "one surface": lambda: problem("slab", 1.0, surfaces=[{"of": "it", "side": s, "convection": {"beta": 1, "outside": 300}} for s in ("left", "right")]),
@@ -82,6 +96,10 @@ REFUSED = {
 def test_a_scene_that_is_not_the_problem_is_refused(words):
     with pytest.raises(ValueError, match=words):
         exact_solution(REFUSED[words]())
+
+
+def test_another_body_far_away_changes_nothing():
+    assert exact_solution(beside(2.75)) is not None
 
 
 def test_no_exact_solution_is_none():
