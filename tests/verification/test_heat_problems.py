@@ -111,6 +111,7 @@ def test_all_latent_heat_is_taken_up_whatever_the_step(step):
         ("gaussian_box", {"exact.gaussian_box.centre": [1, 1]}, "one number a direction"),
         ("stefan", {"alpha": 1}, "bump"),
         ("stefan", {"surfaces.0.fixed.temperature": 320}, "hotter"),
+        ("stefan", {"time.end": 0.1}, "half space"),
     ],
 )
 def test_other_scenes_are_refused(name, changes, words):
