@@ -243,19 +243,22 @@ def near(experiment: Any, run: Run) -> Iterator[str]:
             yield f"{one} and {two} lie {gap:.2g} cells apart, and pass no heat"
 
 
+def beginnings(experiment: Any) -> Iterator[tuple[str, float]]:
+    """(path in the config, time from which it acts [s])."""
+    for section in ("surfaces", "contacts", "sources", "loads"):
+        yield from ((f"{section}.{index}", getattr(entry, "from")) for index, entry in enumerate(getattr(experiment, section)))
+    yield from ((f"walls.{side}", getattr(wall, "from")) for side, wall in experiment.walls.items())
+    for name, tool in experiment.tools.items():
+        yield from ((f"tools.{name}", getattr(tool, "from")), (f"tools.{name}.motion", getattr(tool.motion, "from")))
+    yield from ((f"bodies.{name}.inflow", getattr(body.inflow, "from")) for name, body in experiment.bodies.items() if body.inflow is not None)
+    yield from ((f"loading.{index + 1}", stage.until) for index, stage in enumerate(experiment.loading[:-1]))
+
+
 def late(experiment: Any, run: Run) -> Iterator[str]:
     end = experiment.time.end
-    for section in ("surfaces", "contacts", "sources", "loads"):
-        for index, entry in enumerate(getattr(experiment, section)):
-            if (begins := getattr(entry, "from")) >= end:
-                yield f"{section}.{index} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
-    for side, wall in experiment.walls.items():
-        if (begins := getattr(wall, "from")) >= end:
-            yield f"walls.{side} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
-    for name, tool in experiment.tools.items():
-        for entry, where in ((tool, ""), (tool.motion, ".motion")):
-            if (begins := getattr(entry, "from")) >= end:
-                yield f"tools.{name}{where} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
+    for where, begins in beginnings(experiment):
+        if begins >= end:
+            yield f"{where} begins at {begins:.4g} s and the run ends at {end:.4g} s: it never acts"
     for name, curve in experiment.output.measured.items():
         if curve.samples and min(row[0] for row in curve.samples) > end * (1 + 1e-9):
             yield f"all that was measured for {name} lies behind the end of the run at {end:.4g} s: it has no misfit"

@@ -130,6 +130,16 @@ def test_what_begins_after_the_end_is_told(changes, where):
     assert [text.split()[0] for text in found] == ([where] if where else [])
 
 
+def test_a_stage_of_loading_after_the_end_is_told():
+    body = {"shape": {"point": {}}, "material": "m"}
+    stages = [{"strain_rate": {"zz": 0.01}, "until": 5}, {"until": 8}, {"strain_rate": {"zz": -0.01}}]
+    run = mpm.run_point(mpm.load({
+        "grid": {"dimension": 0}, "bodies": {"p": body}, "materials": {"m": {"density": 1.0, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}},
+        "loading": stages, "time": {"end": 6},
+    }))  # fmt: skip
+    assert [text.split()[1] for text in run.facts["warnings"]] == ["loading.2"]
+
+
 @pytest.mark.parametrize("kappa", [0.05, 5e-3, 2e-3, 5e-4, 1e-5, 1e-30])
 def test_heat_that_reaches_less_than_a_quarter_of_a_cell_is_told(kappa):
     """A slab of ten cells, beta = 50, 80 K, 60 s, against the half space: what is off by more than a tenth has a warning, what is within 3 % has none."""
