@@ -50,8 +50,9 @@ def temperatures(experiment: Any) -> Iterator[tuple[Path, Quantity]]:
             yield path, slot.quantity
     meant = spoken(experiment)
     yield from ((("parameters", name, "value"), quantity) for name, quantity in meant.items())
-    places = [*varied(experiment)]
-    names = Names(experiment) if places else None
+    if not (places := [*varied(experiment)]):
+        return
+    names = Names(experiment)
     for path, name in places:
         try:
             quantity = meant.get(name) or names.resolve(name)[1].quantity

@@ -47,8 +47,12 @@ class Named(Model):
     @classmethod
     def coherent(cls, unit: str, info: ValidationInfo) -> str:
         """Numbers are in SI: 25 with `unit: mm` would be 25 m."""
+        from mpm.config.units import SI  # pint is loaded for other units only
+
+        if unit in ("", "1", *SI):
+            return unit
         right = unit_of(f"1 {unit}")
-        if unit in ("", "1") or (right and as_written(f"1 {unit}", right) == 1.0):
+        if right and as_written(f"1 {unit}", right) == 1.0:
             return unit
         instead = f"value: {info.data.get('value', 1.0):g} {unit}, and no unit, or unit: {right}" if right else "a unit of SI, or no unit"
         raise problem("unit", f"{unit!r} is no SI unit, and numbers are in SI", instead)

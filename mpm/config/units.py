@@ -117,6 +117,11 @@ def convert(text: str, unit: str, name: str, difference: bool = False) -> float:
         said = f"is {article(said)} {said}" if said else f"has the dimension {source.dimensionality}"
         scale = f'"{found[1]} deg{given[-1]}"' if re.fullmatch(r"(deg\.? ?|° )?[CF]", given) and unit == "K" else slip
         raise UnitError(f"{text!r} {said}, but {article(name)} {name} is expected", suggestion=scale)
+    if unit in ("", "1", "rad") and ("radian" in str(units.Quantity(1, source).to_base_units().units)) != (unit == "rad") and given != "dimensionless":
+        raise UnitError(f"{text!r} is {'a share' if unit == 'rad' else 'an angle'}, but {article(name)} {name} is expected")
+    if unit == "rad/s" and "hertz" in str(source):  # which is 1/s to pint
+        turns = units.Quantity(number, source).to("1/s").magnitude
+        raise UnitError(f"{text!r} may be turns or radians a second", suggestion=f'"{60 * turns:g} rpm"')
     if unit == "K" and not difference and "delta_" in str(source):
         said = f"{text!r} is a temperature difference, but {article(name)} {name} is expected"
         raise UnitError(said, suggestion=f'"{found[1]} deg{"F" if "Fahrenheit" in str(source) else "C"}"')

@@ -117,11 +117,10 @@ def refuse_methods(experiment, meets: Meets) -> None:
                 at = ("materials", experiment.bodies[names[of]].material, "heat", "fourier", "alpha")
                 raise SceneError(at, f"{both}, which is known for constant alpha only: a number, {cure}")
     for index, pair in enumerate(experiment.contacts):
-        dull = [name for name in pair.between if experiment.materials[experiment.bodies[name].material].heat is not None and insulator(experiment, name)]
-        if pair.conductance and dull:
-            raise SceneError(
-                ("contacts", index, "conductance"), f"kappa of {dull[0]} is 0, so it can pass no heat on: give it a conductivity, or `conductance: 0`"
-            )
+        dull = [name for name in pair.between if pair.conductance and insulator(experiment, name)]  # both have heat, by config/rules_scene.py
+        if dull:
+            said = f"kappa of {dull[0]} is 0, so it can pass no heat on: give it a conductivity, or `conductance: 0`"
+            raise SceneError(("contacts", index, "conductance"), said)
 
 
 def refuse_apart(experiment, outlines) -> None:
