@@ -34,22 +34,22 @@ def warm_bodies(scene, clock, work, begun: float, dt: float, now: Limits) -> Out
 
 def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome:
     """The heat step: explicit in as many sub-steps or stages as the limits ask for, or implicit."""
-    around = [(body, one) for body, one in zip(scene.bodies, scene.surroundings, strict=True) if one is not None]
+    around = [(b, body, one) for b, (body, one) in enumerate(zip(scene.bodies, scene.surroundings, strict=True)) if one is not None]
     if (not now.heat and not around) or scene.references:  # without conduction a given flux still heats
         return warm_references(scene, clock, dt) if now.heat or around else outcome(COMPLETED)
     tear_open(scene)
     if scene.order.sliced:
         scene.order.refresh()
-    for body, one in around:
-        one.write(scene.space, body, begun, dt)
-    if not all(one.steady for _, one in around):
+    met = scene.meeting
+    for b, body, one in around:
+        one.write(scene.space, body, begun, dt, met.covered(b, dt) if met is not None else None)
+    if not all(one.steady for *_, one in around):
         now = present_limits(scene, clock)
     kind, stable = scene.heat.kind, now.substep() * scene.safety
     ratio = dt / stable * (1 - 1e-9)
     substeps = stages(dt, stable) if kind != "explicit" else 1 if ratio <= 1 else math.ceil(ratio / SUBSTEPS)
     implicit = kind == "implicit" or (kind == "auto" and substeps > MANY)
     clock.heated = (dt / substeps, now.substep(), "heat" if len(now.heat) != 1 else next(iter(now.heat))) if kind == "explicit" else None
-    met = scene.meeting
     kinds = [scene.walls] * len(scene.bodies) if met is None else met.walls
     trio = zip(scene.bodies, scene.surroundings, kinds, strict=True)
     mirrors = np.stack([walls if one is None else one.mirrors(scene.space, body, walls) for body, one, walls in trio])

@@ -122,7 +122,8 @@ def test_totals_over_swept_dimensions_say_of_what(tmp_path):
     from mpm.sweep.cases import plan
     from mpm.sweep.table import described, dimension_of
 
-    data = ball("axisymmetric") | {"sweep": {"axes": {"grid.dimension": [2, "axisymmetric"]}}}
+    box = {"b": {"shape": {"box": {"lower": [0, 0], "upper": [4e-3, 4e-3]}}, "temperature": 300, "material": "m"}}
+    data = ball("axisymmetric") | {"bodies": box, "sweep": {"axes": {"grid.dimension": [2, "axisymmetric"]}}}
     assert dimension_of(plan(mpm.load(data))) is None and dimension_of(plan(mpm.load(ball(3)))) == 3
     said = ", per metre of depth where grid.dimension is 2, per square metre where it is 1"
     assert described("heat_total", ("dimension",), np.zeros(2)).attrs["long_name"].endswith(said)

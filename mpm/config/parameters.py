@@ -47,13 +47,9 @@ class Named(Model):
     @classmethod
     def coherent(cls, unit: str, info: ValidationInfo) -> str:
         """Numbers are in SI: 25 with `unit: mm` would be 25 m."""
-        from mpm.config.units import SI  # pint is loaded for other units only
-
-        if unit in ("", "1", *SI):
+        if is_coherent(unit):
             return unit
         right = unit_of(f"1 {unit}")
-        if right and as_written(f"1 {unit}", right) == 1.0:
-            return unit
         instead = f"value: {info.data.get('value', 1.0):g} {unit}, and no unit, or unit: {right}" if right else "a unit of SI, or no unit"
         raise problem("unit", f"{unit!r} is no SI unit, and numbers are in SI", instead)
 
@@ -75,6 +71,13 @@ def unit_of(text: str) -> str:
         return si(text)
     except UnitError:
         return ""
+
+
+def is_coherent(unit: str) -> bool:
+    """Whether a number in this unit is the number in SI."""
+    from mpm.config.units import SI  # pint is loaded for other units only
+
+    return unit in ("", "1", *SI) or ((right := unit_of(f"1 {unit}")) != "" and as_written(f"1 {unit}", right) == 1.0)
 
 
 def as_written(text: str, unit: str, difference: bool = False) -> float:
@@ -180,7 +183,7 @@ class Binder:
                 number = quantity(name, self.units[name]).validate(value.value) if value.value is not BAD else None
             except ValueError:
                 number = None  # told when the section is validated
-            if number is None:
+            if number is None or not is_coherent(self.units[name]):
                 self.wrong.add(name)
             else:
                 self.values[name] = number

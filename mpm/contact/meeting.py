@@ -99,6 +99,12 @@ class Meeting:
             return np.zeros(first[b + 1] - first[b])
         return self.touching.touched[first[b] : first[b + 1], self.touching.rows[against]]
 
+    def covered(self, b: int, dt: float) -> np.ndarray | None:
+        """Share of the last dt for which other bodies lay on each piece of body b (pieces,); None where none did."""
+        rows = [int(self.touching.rows[BODY + c]) for c in np.flatnonzero(self.pairs[b] >= 0)]
+        found = self.touching.touched[self.touching.first[b] : self.touching.first[b + 1], rows].max(axis=1, initial=0.0)
+        return np.minimum(found / dt, 1.0) if dt > 0.0 and found.any() else None
+
     @property
     def work(self) -> float:
         """Of tools on bodies since the start [J]."""

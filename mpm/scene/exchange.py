@@ -14,6 +14,7 @@ from mpm.scene.shapes import cut_quadrature, shape
 from mpm.state import NoExchange, NoRadiation, Radiation, Surface
 
 COARSE, NOTHING = 4, 1e-9  # cells along each extent in which a side is looked for; of the surface
+ON = 0.05  # cells from the face of a body to which another is welded
 
 
 def table_over_time(model):
@@ -103,12 +104,24 @@ def refuse_absent(experiment) -> None:
                 raise SceneError((section, index, "side"), f"no part of the surface of {entry.of} is its side {entry.side!r}: nothing would act there")
 
 
+def welded_over(experiment, name: str, cut) -> np.ndarray:
+    """(S,) pieces that lie on a body to which this one is welded, and see nothing of what surrounds it. What meets is covered as it touches (mpm.contact)."""
+    group, pairs = {name}, [set(pair.between) for pair in experiment.contacts if pair.welded is not None]
+    for _ in pairs:
+        group |= {one for pair in pairs if pair & group for one in pair}
+    h, shift, found = experiment.grid.cell, np.array(experiment.method.offset) * experiment.grid.cell, np.zeros(len(cut.point), bool)
+    for other in group - {name}:
+        found |= np.abs(shape(experiment.bodies[other].shape, experiment.grid.dimension).moved(shift).distance(cut.point)) <= ON * h
+    return found
+
+
 def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, meets: bool = False):
     """(Surface, Surroundings, pieces kept) of a body: the pieces that an entry names, all of them where a wall is hot or the body `meets` something.
 
     NoExchange, None where nothing acts and nothing is met.
     """
     faces = (cut.area == 0.0) | (cut.area > 1e-6 * cut.area.max(initial=0.0))  # corners, by which bodies meet, are no face; shut seams are
+    faces &= ~welded_over(experiment, name, cut)
     outline, plane = shape(experiment.bodies[name].shape, experiment.grid.dimension), experiment.grid.dimension == 2
     entries = [entry for entry in experiment.surfaces if entry.of == name]
     acts = [act for entry in entries for act in acts_of(entry, np.flatnonzero(outline.faces(cut, entry.side, plane) & faces))]

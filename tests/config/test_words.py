@@ -192,7 +192,7 @@ def test_every_temperature_of_a_config_is_looked_at(tmp_path):
 
 def test_a_named_temperature_without_a_unit_is_looked_at(tmp_path):
     file = tmp_path / "slab.yaml"
-    more = "parameters: {start: 20, wide: 5, warm: 20 degC, cold: 3 K}\nsweep: {axes: {start: [30, 40 degC]}}\n"
+    more = "parameters: {start: 20, wide: 5, warm: 20 degC, cold: 3 K}\nsweep: {axes: {start: [30, 300]}}\n"
     text = slab(temperature="=start", more=more).replace("alpha: 2000", "alpha: {bump: {base: 2, heat: 3, at: =warm, width: =wide}}")
     file.write_text(text.replace("outside: 100 degC", "outside: =cold"))
     assert [line.split(": ")[1] for line in cautions(load(file)) if "slab.yaml" in line] == ["parameters.start.value", "sweep.axes.start"]
