@@ -5,8 +5,9 @@ heat      heat content and heat taken in disagree by more than HEAT of the large
           FLIP's share of it, conducts by itself more than HEAT of what the material does: R0 alpha h^2/(4 dt) (docs/physics.md 3)
 depth     heat that a surface exchanges, or a body that is touched, reaches less than DEPTH cells deep, where the body resists (beta depth/kappa over RESISTS):
           two half spaces that meet are 1.9 % of their difference too even at 0.7 cells, a quarter of a cell from the face. Against a half space
-          bodies that move take in 10 % too much at 1 cell, 39 % at 0.5, 122 % at 0.25 (1-D, beta depth/kappa = 1.25, 2.5, 5); those that do not 2 % too
-          little at 0.25 and three times too much at 0.12. With kappa towards 0 both take in what a layer of a cell does, and that layer takes a given flux
+          bodies that move take in at most 10 % (h/depth)^2 too much (1-D, 0.12 to 4 cells, beta h/kappa from 0.3 to inf: 0.2 % at 4 cells, 2.5 % at 2, 9.8 %
+          at 1, 285 % at 0.12); those that do not 2 % too little at 0.25 and three times too much at 0.12. With kappa towards 0 both take in what a layer
+          of a cell does, and that layer takes a given flux
 energy    energy of motion that no law accounts for is more than ENERGY of what it holds, dissipates or takes from loads. It shows in the answer: slump.yaml
           loses 15 % at one of its points with `transfer: apic`, 10 % with affine FLIP, and spreads 0.109 and 0.123 mm
 thin      a body, or all material, is less than THIN cells across
@@ -34,6 +35,7 @@ from mpm.records.variables import describe
 from mpm.rigid.touching import TOUCH
 from mpm.scene.bearing import lying
 from mpm.scene.exchange import most, programme
+from mpm.scene.inventory import beginnings
 from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.rigid import matter
 from mpm.scene.scales import exchanging, scales
@@ -157,7 +159,8 @@ def depth(experiment: Any, run: Run) -> Iterator[str]:
         deep = float(np.sqrt(kappa * experiment.time.end / (material.density * value(law(material.heat.alpha), body.temperature))))
         if deep < DEPTH[experiment.moving] * h * (1 - 1e-9) and (given or beta * deep > RESISTS * kappa):
             what = "what is exchanged is that" if beta else "temperatures beside its surface are those"
-            yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and {what} of a layer of about a cell"
+            more = f": at most {10 * (h / deep) ** 2:.0f} % too much" if experiment.moving and deep and exchanged(experiment, name) else ""
+            yield f"heat reaches {deep:.2g} m into {name}, {deep / h:.1g} of a cell, and {what} of a layer of about a cell{more}"
 
 
 def turned_over(series: dict[str, np.ndarray]) -> float:
@@ -241,17 +244,6 @@ def near(experiment: Any, run: Run) -> Iterator[str]:
         gap = float(np.min(b.distance(cut_quadrature(a, edges, 2)[1].x))) / h
         if TOUCH < gap < 1 - 1e-9:
             yield f"{one} and {two} lie {gap:.2g} cells apart, and pass no heat"
-
-
-def beginnings(experiment: Any) -> Iterator[tuple[str, float]]:
-    """(path in the config, time from which it acts [s])."""
-    for section in ("surfaces", "contacts", "sources", "loads"):
-        yield from ((f"{section}.{index}", getattr(entry, "from")) for index, entry in enumerate(getattr(experiment, section)))
-    yield from ((f"walls.{side}", getattr(wall, "from")) for side, wall in experiment.walls.items())
-    for name, tool in experiment.tools.items():
-        yield from ((f"tools.{name}", getattr(tool, "from")), (f"tools.{name}.motion", getattr(tool.motion, "from")))
-    yield from ((f"bodies.{name}.inflow", getattr(body.inflow, "from")) for name, body in experiment.bodies.items() if body.inflow is not None)
-    yield from ((f"loading.{index + 1}", stage.until) for index, stage in enumerate(experiment.loading[:-1]))
 
 
 def late(experiment: Any, run: Run) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """What a config holds, from the config alone: the physics that is compiled and what is absent, the bytes that a point writes."""
 
 import math
+from collections.abc import Iterator
 from itertools import combinations
 
 from mpm.config.boundary import EXCHANGES
@@ -88,6 +89,17 @@ def layers(experiment) -> int:
 
     flowing = (column(experiment, name) for name, body in experiment.bodies.items() if body.inflow is not None)
     return sum(round(found.length * experiment.method.particles / experiment.grid.cell) for found in flowing)
+
+
+def beginnings(experiment) -> Iterator[tuple[str, float]]:
+    """(path in the config, time from which it acts [s])."""
+    for section in ("surfaces", "contacts", "sources", "loads"):
+        yield from ((f"{section}.{index}", getattr(entry, "from")) for index, entry in enumerate(getattr(experiment, section)))
+    yield from ((f"walls.{side}", getattr(wall, "from")) for side, wall in experiment.walls.items())
+    for name, tool in experiment.tools.items():
+        yield from ((f"tools.{name}", getattr(tool, "from")), (f"tools.{name}.motion", getattr(tool.motion, "from")))
+    yield from ((f"bodies.{name}.inflow", getattr(body.inflow, "from")) for name, body in experiment.bodies.items() if body.inflow is not None)
+    yield from ((f"loading.{index + 1}", stage.until) for index, stage in enumerate(experiment.loading[:-1]))
 
 
 def ticks(end: float, every: float) -> int:
