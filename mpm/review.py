@@ -288,7 +288,7 @@ def bend(experiment: Any, run: Run) -> Iterator[str]:
         if lying(experiment, lower, upper, along)[1] and upper[along] - lower[along] >= SLENDER * thick:
             ends = [run.series[f"position_{end}_{one}"] for one in others for end in ("min", "max")]
             if (moved := max(float(np.abs(end - end[0]).max()) for end in ends) / experiment.grid.cell) > BENDS:
-                yield f"{name} is held at a wall and bends by {moved:.2g} cells, and comes out too soft in the updated frame, by several per cent where that is far"
+                yield f"{name} is held at a wall and bends by {moved:.2g} cells, and comes out too soft in the updated frame, some per cent where that is far"
 
 
 LOOKS = {"volume": volume, "heat": heat, "depth": depth, "energy": energy, "thin": thin, "probe": probe, "edge": edge, "step": step, "near": near, "late": late,
