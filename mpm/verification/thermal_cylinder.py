@@ -4,8 +4,8 @@ theta - theta_0 = d(r): theta = theta_o + (theta_i - theta_o) ln(b/r)/ln(b/a).  
 u = alpha (1 + nu)/(1 - nu) [I(r)/r + ((1 - 2 nu) r^2 + a^2)/r c I(b)]
 sigma_r = A/r^2 [(r^2 - a^2) c I(b) - I(r)],  sigma_t = A/r^2 [(r^2 + a^2) c I(b) + I(r) - d r^2],  sigma_z = A [2 nu c I(b) - d]
 For small strains. The body starts in its steady temperature, without stress; what is compared is where it has come to rest.
-Order   1.2 in the cell: 1.3 was measured in the total frame at errors of 1e-4 to 2e-5, with temperatures held to h/(1000 L), which is of order 1 and was
-what was left (mpm.heat.exchange: FIRMER); stress 2.4
+Order   1.8 in the cell; 3.0 measured in the total frame, stress 2.6. With temperatures held to h/(1000 L), which is of order 1, it was 1.3
+(mpm.heat.exchange: FIRMER)
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 
 from mpm.verification.setup import at_rest, only_body
 
-ORDER = 1.2
+ORDER = 1.8
 
 
 def exact(experiment):

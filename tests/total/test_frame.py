@@ -115,6 +115,16 @@ def test_rest_knows_no_step_no_path_and_no_grid(core):
     assert drop(core, **{"method.offset": [0, 0.37]}) == pytest.approx(first, rel=1e-4)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("changes", "within"), [
+    ({"time.safety": 0.25}, 1e-7), ({"loads.0.drag.rate": 3392, "time.end": 4.0, "output.every": 1.0}, 1e-6), ({"method.offset": [0, 0.37]}, 5e-4),
+    ({"gravity": [0, {"table": {"time": [0, 0.1], "value": [0, -4578.75], "interpolation": "smooth"}}], "time.end": 0.3}, 1e-6),
+])  # fmt: skip
+def test_rest_of_one_cell_knows_no_way(core, changes, within):
+    """One cell over the thickness: a quarter of the step, sixteen times the drag, the beam shifted, gravity that sets in slowly."""
+    assert drop(core, 0.1, **changes) == pytest.approx(drop(core, 0.1), rel=within)
+
+
 def test_energy_of_a_free_vibration(core):
     """Kinetic and elastic energy of a block that rings for a hundred periods of its first mode: within 0.1 % ((omega dt)^2/4 by theory), and no
     drift. At ten times the speed waves steepen within that time, and what reaches waves of two cells swings by more."""
