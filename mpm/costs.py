@@ -18,19 +18,14 @@ from mpm.scene.refusal import SceneError, placed
 LEAST = {"rigid": 1.5e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and record included
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 INCREMENTS = 0.8  # of STEP more with FLIP, whose increments go over the grid beside velocities: slump.yaml takes 0.61 s with APIC, 0.8 with affine FLIP
-MET = {1: 1e-6, 2: 1.5e-6, "axisymmetric": 1.5e-6, 3: 1.1e-5}  # s a piece of surface and step near something: places, gaps, impulses (mpm.contact)
+SKIN = 60e-9  # s a piece of surface and step near something: its place, and what it is before
+MET = {1: 1e-6, 2: 6e-6, "axisymmetric": 6e-6, 3: 6e-5}  # s a piece that meets something and step: gap, weights, impulses (mpm.contact)
 LOCKING = 1.0  # of STEP more with F-bar, whose averages go over the grid and back
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6, "near": 40e-6}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
-RIGID = {
-    "LinearSteps": 0.25e-3,
-    "NewtonSteps": 25e-3,
-    "ChebyshevSteps": 6e-3,
-    "BoundedSteps": 3e-3,
-    "JoinedLinear": 0.1,
-    "JoinedNewton": 0.5,
-}  # s of the interpreter in a run, by method
+# s of the interpreter in a run, by method
+RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3, "JoinedLinear": 0.1, "JoinedNewton": 0.5}
 SHOWN = 60e-6  # s an output of rigid bodies
 COMPONENTS = {1: 3, 2: 4, 3: 6}  # of a strain, by directions
 BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_000}  # interpreter, packages, kernels from the cache
@@ -185,15 +180,18 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
 
 
 def meeting(experiment, scene, particles: int, steps: int, sound: float) -> float:
-    """Seconds that contact takes: pieces of surface in the steps in which something may be near, two more of them a record (mpm.contact.insync)."""
-    from mpm.contact.outlook import near_share
+    """Seconds that contact takes: all pieces of surface in the steps in which something may be near, two more of them a record (mpm.contact.insync), and more
+    for those that meet something."""
+    from mpm.contact.outlook import near_shares
 
     parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
     settles = any(part.flow is not None for part in parts) or any(load.drag is not None for load in experiment.loads)
-    if not (share := near_share(scene, experiment.time.end / experiment.time.scale, sound, settles)):
+    found = list(near_shares(scene, experiment.time.end / experiment.time.scale, sound, settles))
+    if not (share := max((part for part, _ in found), default=0.0)):
         return 0.0
-    pieces = int(scene.meeting.touching.first[-1]) * (particles / sum(len(body.particles.m) for body in scene.wholes)) ** (1 - 1 / experiment.grid.directions)
-    return share * (steps + 2 * outputs(experiment)) * (ALONE["near"] + pieces * MET[experiment.grid.dimension])
+    finer = (particles / sum(len(body.particles.m) for body in scene.wholes)) ** (1 - 1 / experiment.grid.directions)
+    pieces, met = finer * int(scene.meeting.touching.first[-1]), finer * sum(part * some for part, some in found)
+    return (steps + 2 * outputs(experiment)) * (share * (ALONE["near"] + pieces * SKIN) + met * MET[experiment.grid.dimension])
 
 
 def estimate_moving(experiment) -> dict:

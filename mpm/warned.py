@@ -24,6 +24,7 @@ KINDS = {
     "traction": "`method.frame: total`, which bears tractions on any surface at any strain; force and moment of the load as a whole are right",
     "narrow": "smaller cells, or trust its force alone: over the way it is off by a tenth or so, and pressure and area mean nothing",
     "bend": "`method.frame: total`; where that is refused, `method.gradient: bspline` and `method.particles: 4`",
+    "pieces": "smaller cells, or weld the two: beyond three times they may enter each other between the pieces of their surfaces",
 }
 
 

@@ -169,6 +169,7 @@ ELSEWHERE = {
     "heat_locally(GridHeating)", "compress(GridHeating)",  # tests/integrate/test_grid_heating.py
     "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
     "act(Given)", "act(Both)", "warm(Warming)", "warm(NoWarming)", "push_at(Force)", "push_at(NoForce)",  # tests/verification/test_sources.py
+    "hold(Held)",  # tests/contact/test_held.py
     "push_at(Jumping)", *(f"mix_past({force})" for force in ("Force", "NoForce", "Jumping")),  # tests/contact/test_course.py
     "act(Load)", "turn(Nominal)", "turn(Present)",  # tests/total/test_present_area.py
     *(f"{role}({course})" for role in ("share", "within", "opening") for course in ("Ramp", "Within")),  # tests/integrate/test_traction.py

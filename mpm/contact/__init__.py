@@ -26,6 +26,8 @@ Further files
     step_threaded  the same for a scene in slabs, by threads
     texture    what a press that bites twice says of a body
     triangles  signed distance of a closed triangle mesh
+    held       bodies that stand still beside others that move
     links      where heat passes between bodies
+    stretched  how far the surfaces of a pair have grown, for a warning
     narrow     how many cells a contact is wide, for a warning
 """

@@ -56,7 +56,7 @@ def heaviest(scene) -> float:
 def clear(scene, clock, dt: float, steps: int) -> int:
     """How many of `steps` steps of dt to take at once: fewer where that surely brings nothing near, so that contacts are computed, and compiled, only then."""
     met, fewer = scene.meeting, steps // 2
-    if met is None or not met.near(reach(scene, clock, dt * steps), clock.time):
+    if met is None or met.stands or not met.near(reach(scene, clock, dt * steps), clock.time):
         return steps
     while fewer >= FEWEST and met.left < reach(scene, clock, dt * fewer):
         fewer //= 2

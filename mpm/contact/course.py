@@ -76,10 +76,10 @@ def strongest(scene) -> np.ndarray:
 
 
 def momentum(scene) -> tuple[np.ndarray, float]:
-    """(D,) [kg m/s], and the mass [kg]."""
-    D = scene.gravity.shape[1]
+    """(D,) [kg m/s], and the mass [kg] that moves."""
+    D, held = scene.gravity.shape[1], scene.meeting.held if scene.meeting is not None and scene.meeting.stands else [False] * len(scene.bodies)
     if scene.references:
         parts = [(one.m[one.active].astype(float), one.v[one.active, :D].astype(float)) for one in scene.references]
     else:
-        parts = [(body.particles.m.astype(float), body.particles.v.astype(float)) for body in scene.bodies]
+        parts = [(body.particles.m.astype(float), body.particles.v.astype(float)) for body, still in zip(scene.bodies, held, strict=True) if not still]
     return sum(m @ v for m, v in parts), float(sum(m.sum() for m, _ in parts))

@@ -7,10 +7,11 @@ import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.blocks import new_blocks
-from mpm.contact import books, narrow
+from mpm.contact import books, narrow, stretched
 from mpm.contact.conduct import FIELDS, conduct_together
 from mpm.contact.drive import Drive
 from mpm.contact.found import BODY
+from mpm.contact.held import Held, NotHeld
 from mpm.contact.links import PERFECT, find_links
 from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
@@ -45,9 +46,11 @@ class Meeting:
     names: tuple[str, ...] = ()
     sides: tuple[str, ...] = ()  # names of walls by number
     drive: Drive | None = None
+    held: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))  # (B,) which bodies stand still; of none where all move
     touching: Touching = field(init=False)
     passed: np.ndarray = field(init=False)  # (B, B) heat that a body took in from each other since the start [J]
     hardest: np.ndarray = field(init=False)  # (B, K, 2) largest force of each body on what it meets, and how many cells it touches there (narrow.py)
+    grown: np.ndarray = field(init=False)  # (B, B) by how much the surfaces of a pair that presses have grown, the smaller of the two (stretched.py)
     passing: np.ndarray = field(init=False)  # (B, B) whether heat ever passes between two bodies; links may be 0 for a while (mpm.contact.course)
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
@@ -65,18 +68,24 @@ class Meeting:
         R, P, F = max(int(met.sum()), 1), int(first[-1]), int(self.fields.max()) + 1
         walls = np.stack([self.walls[self.fields == f].min(axis=0) for f in range(F)])  # a group is a mirror's where one of it is
         tools, K = NoTools() if self.drive is None else self.drive.tools, BODY + B + T
+        held = Held(np.array([self.held[self.fields == f].all() for f in range(F)])) if self.stands else NotHeld()
         self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
                                  np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
-                                 np.array([P // 4 + 64]))  # fmt: skip
-        self.passed, self.passing, self.hardest = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2))
+                                 np.array([P // 4 + 64]), held)  # fmt: skip
+        self.passed, self.passing, self.hardest, self.grown = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2)), np.zeros((B, B))
 
     @property
     def tool_names(self) -> tuple[str, ...]:
         return () if self.drive is None else tuple(one.name for one in self.drive.told)
 
+    @property
+    def stands(self) -> bool:
+        """Whether any body stands still beside others that move."""
+        return bool(self.held.any())
+
     def memory(self) -> dict:
         """What a run that goes on needs (mpm.memory)."""
-        own = {name: getattr(self, name) for name in ("left", "told", "passed", "hardest")}
+        own = {name: getattr(self, name) for name in ("left", "told", "passed", "hardest", "grown")}
         return {name: getattr(self.touching, name) for name in KEPT} | own | self.free()
 
     def free(self) -> dict:
@@ -88,7 +97,8 @@ class Meeting:
         self.left, self.told = found["left"], found["told"]
         for name in KEPT:
             getattr(self.touching, name)[...] = found[name]
-        self.passed[...], self.hardest[...] = found["passed"], found["hardest"]
+        for name in ("passed", "hardest", "grown"):
+            getattr(self, name)[...] = found[name]
         for name, array in self.free().items():
             array[...] = found[name]
 
@@ -119,6 +129,7 @@ class Meeting:
         """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted, at positions of `time` [s]."""
         since, self.told = now - self.told, now
         narrow.look(self, since)
+        stretched.look(self)
         return books.series(self, axes, since, time)
 
     def texture(self, tool: str, axes: tuple[str, ...], series) -> dict[str, float]:
@@ -162,7 +173,7 @@ class Meeting:
         """Whether anything may be near while no particle and no tool moves farther than `travel` [m] from `time` on."""
         if self.left < travel:
             self.left, self.unforeseen = self.distance(time)
-        return self.left < travel
+        return self.left < travel or self.stands
 
     def distance(self, time: float) -> tuple[float, tuple[int, int] | None]:
         """How far a particle may move before anything acts [m]; (UNPREPARED, body) where a body that has no pieces to meet by is that near.

@@ -14,6 +14,7 @@ import numpy as np
 from mpm.boundary import directions
 from mpm.contact.found import BODY, FACING
 from mpm.contact.skin import POINT
+from mpm.contact.stretched import normals
 from mpm.state import Axisymmetric, Surface
 from mpm.warned import warning
 
@@ -39,8 +40,7 @@ def width(met, b: int, to: int) -> float:
     pressed = touching.warm[first : first + len(surface.area), touching.rows[to]].any(axis=1)  # of a body that comes in, the pieces that are there
     if not pressed.any():
         return 0.0
-    F = surface.F[surface.row[surface.owner]].astype(float)
-    normal = body.particles.J[surface.owner, None] * np.linalg.solve(F.transpose(0, 2, 1), surface.area[..., None].astype(float))[..., 0]
+    normal = normals(body)
     area = np.linalg.norm(normal, axis=1)
     pressed &= area > 2 * POINT * met.space.h ** (directions(met.space) - 1)
     way = normal[pressed].sum(axis=0)

@@ -11,6 +11,7 @@ from mpm.boundary import directions, extents
 from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
+from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import CLOSE, COARSE, pose, press, settle, speed
 from mpm.contact.tools import arm, carry, move_tools, place_tools
@@ -46,6 +47,7 @@ class Touching(NamedTuple):
     rubbed: np.ndarray  # (1,) work that friction has taken since the start [J]
     number: np.ndarray  # (nodes,) scratch, -1
     room: np.ndarray  # (1,) contacts to make room for
+    held: Any  # Held or NotHeld
 
 
 class Pace(NamedTuple):
@@ -92,6 +94,7 @@ def before_contacts(method, bodies, chunk, touching, grids, when, gravity, pace)
     acts = pace.kick if step == 0 else pace.dt
     for f in range(len(touching.walls)):
         update(method, field_buffers(grids, f), now, touching.walls[f], gravity[step % len(gravity)], acts)
+    hold(touching.held, method, grids, now, np.inf)
     if len(touching.walls) == 1:
         sharpen(method.scheme, method, bodies, chunk, field_buffers(grids, 0), now, touching.walls[0])
     place_tools(touching.tools, step, pace.ahead, acts)
@@ -101,6 +104,7 @@ def before_contacts(method, bodies, chunk, touching, grids, when, gravity, pace)
 def after_contacts(method, bodies, chunk, touching, grids, now, dt, reports):
     """What is done to nodes whose contacts are solved."""
     move_tools(touching.tools, dt)
+    hold(touching.held, method, grids, now, 1.0)
     if len(touching.walls) == 1:
         first, walls = field_buffers(grids, 0), touching.walls[0]
         nodes, box = first.nodes[now], first.boxes[now]

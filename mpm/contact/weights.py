@@ -88,7 +88,7 @@ def shares(space, gradient, b, walls, contacts, some, nodes, number, short, weig
                 continue
             mirrored = spot(space, gradient, walls, contacts.home[i, k], spots)
             plain(spots, contacts.home[i, k], contacts.point[i, k], W)
-            if contacts.balanced[i, k]:
+            if contacts.balanced[i, k] and nodes[spots[0][M // 2], D] < np.inf:  # a body that stands bears anything
                 balance(space, contacts, i, k, nodes, number, spots, short, system, W)
             for m in range(M):
                 at[i, k, m] = spots[0][m]

@@ -24,7 +24,7 @@ To add      a function View -> Figure in layouts.py or a sibling, and a line in 
 Further files
     chart       the figure of a chart (`chart.nc`)
     fit         the figure of `mpm fit`
-    outlines    walls of the domain and tools, as lines in space
+    outlines    walls of the domain, tools and nozzles, as lines in space
     refined     the figure of two refined axes
     sensitivity the figure of `mpm sensitivity`
     stability   the figure of `mpm stability`

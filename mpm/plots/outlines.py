@@ -1,8 +1,8 @@
-"""Outlines of what stands around the bodies: walls of the domain and tools, as lines in space. Figures and movies draw them with `draw`.
+"""Outlines of what stands around the bodies: walls of the domain, tools and nozzles, as lines in space. Figures and movies draw them with `draw`.
 
 A tool stands where its programme says: its path or velocity, its spin, `from` and `until`. How far a force has pushed a tool no dataset tells: such a tool
-is drawn dotted where it began. Round shapes are polygons of ROUND sides; in 3-D boxes are their edges, balls three circles, cylinders two circles and
-four lines.
+is drawn dotted where it began. A nozzle is drawn as long as something flows through it, open at both ends. Round shapes are polygons of ROUND sides; in 3-D
+boxes are their edges, balls three circles, cylinders two circles and four lines.
 """
 
 import itertools
@@ -53,6 +53,31 @@ def tools(config: dict[str, Any], time: float) -> Iterator[tuple[str, list[np.nd
         centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         turn, moved = rotation(motion, time, len(centre)), centre + displacement(motion, time, len(centre))
         yield str(name), [(line - centre) @ turn.T + moved for line in lines], motion.get("force") is None
+
+
+def nozzles(config: dict[str, Any], time: float) -> Iterator[tuple[str, list[np.ndarray], bool]]:
+    """The same of each body that flows in at a time [s]: the sides of its nozzle."""
+    dimension, method = (config.get("grid") or {}).get("dimension"), config.get("method") or {}
+    for name, body in (config.get("bodies") or {}).items():
+        flow = body.get("inflow") or {}
+        if not flow or not flow["from"] <= time < (math.inf if flow.get("until") is None else flow["until"]):
+            continue
+        lines = shape(body["shape"], dimension)
+        if dimension != 3:
+            axis = next(a for a, entry in enumerate(flow.get("velocity") or config["gravity"]) if flows(entry))
+            corners = np.concatenate(lines)
+            low, high = corners.min(axis=0), corners.max(axis=0)
+            sides = [np.array([low, high]) for _ in range(2)]
+            for line, end in zip(sides, (low, high), strict=True):
+                line[:, 1 - axis] = end[1 - axis]
+            lines = sides[1:] if dimension == "axisymmetric" and low[0] <= 0.0 else sides
+        shift = np.asarray(method.get("offset") or np.zeros(lines[0].shape[1])) * config["grid"]["cell"]
+        yield str(name), [line + shift for line in lines], True
+
+
+def flows(entry: Any) -> bool:
+    """Whether an entry of a velocity is ever not zero."""
+    return bool(np.any(entry["table"]["value"])) if isinstance(entry, dict) and "table" in entry else entry != 0
 
 
 def displacement(motion: dict[str, Any], time: float, D: int) -> np.ndarray:
@@ -158,8 +183,8 @@ def draw_walls(ax: Any, config: dict[str, Any], shown: Callable[[np.ndarray], np
 
 
 def draw_tools(ax: Any, config: dict[str, Any], time: float, shown: Callable[[np.ndarray], np.ndarray], mirrored: bool = False) -> list[Any]:
-    """The tools that are there at a time [s]; the artists, so that a movie can take them away again."""
+    """The tools and nozzles that are there at a time [s]; the artists, so that a movie can take them away again."""
     found = []
-    for _, lines, known in tools(config, time):
+    for _, lines, known in itertools.chain(tools(config, time), nozzles(config, time)):
         found += draw(ax, lines, shown, mirrored, color=INK, lw=1.4, ls="-" if known else ":", zorder=5)
     return found

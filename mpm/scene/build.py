@@ -12,6 +12,7 @@ from mpm.basis import BASES
 from mpm.boundary import extents
 from mpm.config.shapes_fit import home
 from mpm.error import Motion
+from mpm.materials import Hencky
 from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
@@ -54,6 +55,8 @@ from mpm.state import (
 )  # fmt: skip
 from mpm.total.drive import begin as begin_nodes
 from mpm.transfer import Apic, Bspline, Flip, Mls, Xpic
+
+STILL = Hencky(1e-30, 0.0)  # of a body without `elastic` beside others that move: it is never strained (mpm.contact.held), and limits no step
 
 
 def output_times(experiment, every: float | None = None) -> np.ndarray:
@@ -116,6 +119,7 @@ def moving_body(experiment, name: str, zero: float, space, meets: bool, sampled)
     arrays = (x, v, C, np.zeros((N, STRAINS[D])), J, material.density * cut.volume, cut.volume)
     particles = Particles(*(np.ascontiguousarray(a, dtype=dtype) for a in arrays))
     elastic, flow = mechanical_laws(material)
+    elastic = STILL if elastic is None else elastic
     seams, thermal, surface, expansion, heating, surroundings = None, Isothermal(config.temperature), NoExchange(), NoExpansion(), NoHeating(), None
     if material.heat is not None:
         theta = (np.full(N, config.temperature - zero) if config.inflow is None else warmth(experiment, name, x) - zero).astype(dtype)
@@ -171,9 +175,6 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
     points: the cut cells of each body by its name, where they are not those of the grid (mpm.scene.over).
     """
     names = tuple(experiment.bodies)
-    rigid = [name for name in names if experiment.materials[experiment.bodies[name].material].elastic is None]
-    if rigid:
-        raise SceneError(("bodies", rigid[0]), f"{', '.join(rigid)} has no `elastic` and would not move, while other bodies do: give it one, or run it alone")
     refuse_absent(experiment)
     scale, experiment = experiment.time.scale, hurried(experiment)
     space = grid_space(experiment)

@@ -45,17 +45,18 @@ def tool_in_words(tool) -> str:
 
 
 def pairs(experiment) -> list[str]:
-    """How every two bodies that move meet, or touch where none moves; their number where they are more than MANY."""
+    """How every two bodies meet where any moves, or touch where none does; their number where they are more than MANY."""
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
     moving = [name for name, body in experiment.bodies.items() if experiment.materials[body.material].elastic is not None]
     found = []
-    for two in combinations(moving, 2):
+    for two in combinations(experiment.bodies if moving else (), 2):
         pair, warm = known.get(frozenset(two)), all(experiment.materials[experiment.bodies[name].material].heat is not None for name in two)
         rubs = "slide" if not pair or not pair.friction else f"rub ({pair.friction:g})" if isinstance(pair.friction, float) else "rub (over time)"
         slides = "are welded" if pair and pair.welded else "do not slide" if pair and pair.stick else rubs
         free = pair is None or pair.conductance in (None, math.inf)
         passes = "and pass heat freely" if free else f"and pass heat ({pair.conductance:g} W/m2K)" if pair.conductance else "without heat"
-        found.append(f"contact: {two[0]} and {two[1]} {slides}{' ' + passes if warm else ''}{'' if pair else ' (not named)'}")
+        one, other = (name if name in moving else f"{name} (stands still)" for name in two)
+        found.append(f"contact: {one} and {other} {slides}{' ' + passes if warm else ''}{'' if pair else ' (not named)'}")
     if not moving and len(experiment.bodies) > 1 and experiment.grid.dimension != 0:
         found = at_rest(experiment, known)
     return found if len(found) <= MANY else [f"contact: {len(found)} pairs of bodies, {len(known)} of them named"]

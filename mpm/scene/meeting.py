@@ -38,6 +38,7 @@ class Meets:
     pairs: np.ndarray
     fields: np.ndarray
     links: np.ndarray
+    held: np.ndarray
     tools: bool = False
 
     @property
@@ -64,6 +65,7 @@ def plan_meetings(experiment, sides) -> Meets:
                 stops[b, axis, upper] = rubbing(named.friction) if named is not None else 0.0
     fields = np.zeros(B, np.int64)
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
+    held = np.array([experiment.materials[body.material].elastic is None for body in experiment.bodies.values()])
     for b in range(B):
         welded = [c for c in range(b) if getattr(known.get(frozenset((names[b], names[c]))), "welded", None) is not None]
         fields[b] = fields[welded[0]] if welded else fields[:b].max(initial=-1) + 1
@@ -74,11 +76,12 @@ def plan_meetings(experiment, sides) -> Meets:
         for c in range(B):
             pair = known.get(frozenset((names[b], names[c])))
             apart = np.linalg.norm(np.maximum(0.0, np.maximum(boxes[b][0] - boxes[c][1], boxes[c][0] - boxes[b][1])))
-            if b == c or apart >= travels[b].max() + travels[c].max() + APART * grid.cell:
+            far = apart >= travels[b].max() + travels[c].max() + APART * grid.cell
+            if b == c or (far and not (held[b] or held[c])):
                 continue
             if fields[b] != fields[c]:
                 pairs[b, c] = friction(pair)
-            if warm[b] and warm[c]:
+            if warm[b] and warm[c] and not far:
                 links[b, c] = math.inf if pair is None or pair.conductance is None else pair.conductance
     fields = np.unique(fields, return_inverse=True)[1]
     for f in range(fields.max() + 1):  # what is welded to a body at a mirror is behind the same mirror
@@ -86,8 +89,9 @@ def plan_meetings(experiment, sides) -> Meets:
         stops[mine] = np.where((walls[mine] < CONTACT).any(axis=0), -1.0, stops[mine])
     refuse_overlap(experiment, names, outlines, boxes)
     refuse_apart(experiment, outlines)
+    refuse_held(experiment, names, held)
     refuse_tools(experiment, names, outlines)
-    found = Meets(walls, stops, pairs, fields, links, bool(experiment.tools))
+    found = Meets(walls, stops, pairs, fields, links, held, bool(experiment.tools))
     refuse_methods(experiment, found)
     return found
 
@@ -136,6 +140,15 @@ def refuse_apart(experiment, outlines) -> None:
         if gap > OVERLAP * h:
             said = f"{' and '.join(pair.between)} are to be welded and lie {gap / h:.2g} cells apart: let them touch at the start"
             raise SceneError(("contacts", index), said)
+
+
+def refuse_held(experiment, names, held) -> None:
+    """SceneError where a body without `elastic`, which stands still, is welded to another."""
+    for index, pair in enumerate(experiment.contacts):
+        for name in pair.between if pair.welded is not None else ():
+            if held[names.index(name)]:
+                said = f"{name} has no `elastic` and stands still: what is welded to it would too. Take `stick`, which lets go where it is pulled off"
+                raise SceneError(("contacts", index, "welded"), said)
 
 
 def friction(pair) -> float:
@@ -201,7 +214,7 @@ def refuse_overlap(experiment, names, outlines, boxes) -> None:
 
 def meeting(meets: Meets, space, bodies, surroundings, names, sides, tools) -> Meeting:
     """What the run keeps of it; hot walls that a body is not bonded to, and hot tools, act while it touches them."""
-    met = Meeting(space, tuple(bodies), meets.walls, meets.stops, meets.pairs, meets.fields, meets.links, names, sides, tools)
+    met = Meeting(space, tuple(bodies), meets.walls, meets.stops, meets.pairs, meets.fields, meets.links, names, sides, tools, meets.held)
     met.warms = bool((met.links > 0).any())
     for b, around in enumerate(surroundings):
         if around is not None:

@@ -20,6 +20,7 @@ from mpm.scene.shapes import Ball, Box, Cylinder, Polygon, cut_quadrature, shape
 MOST_STEPS = 64  # of a block
 OVERLAP = 0.05  # cells
 NEAR = 1.0  # cells about a mesh in which its distance is known
+LOOKS = 21  # times of a tool's way
 FAST = 0.2  # of the speed of sound: a tool that is faster passes pieces between two steps
 
 
@@ -101,7 +102,7 @@ def numbers(body: Shape, dimension) -> tuple[int, np.ndarray, np.ndarray, np.nda
 
 
 def refuse_tools(experiment, names, outlines) -> None:
-    """SceneError where a tool and a body overlap at the start, a tool is thinner than a cell, or faster than pieces can be followed."""
+    """SceneError where a tool and a body overlap at the start, a tool is thinner than a cell, rounder than one, or faster than pieces can be followed."""
     h = experiment.grid.cell
     for name, tool in experiment.tools.items():
         one = outline(experiment, tool)
@@ -109,6 +110,9 @@ def refuse_tools(experiment, names, outlines) -> None:
         if np.min(high - low) < h * (1 - 1e-9):
             said = f"it is {np.min(high - low) / h:.2g} cells thick, and what is thinner than a cell passes between the pieces of a surface"
             raise SceneError(("tools", name, "shape"), f"{said}: take a thicker tool, or smaller cells")
+        if isinstance(one, Ball | Cylinder) and len(low) > 1 and one.radius < h * (1 - 1e-9):
+            said = f"its radius is {one.radius / h:.2g} cells, and a tool as round as that enters between the pieces of a surface"
+            raise SceneError(("tools", name, "shape"), f"{said}: take a larger tool, or smaller cells")
         if getattr(tool, "from") > 0:
             continue  # where bodies are by then is not known
         for body, other in zip(names, outlines, strict=True):
@@ -117,17 +121,32 @@ def refuse_tools(experiment, names, outlines) -> None:
                 where = ", ".join(f"{1e3 * x:.4g}" for x in place)
                 said = f"it overlaps {body} at the start by {depth / h:.2g} cells near ({where}) mm"
                 raise SceneError(("tools", name, "shape"), f"{said}: move one of them")
-    slowest = min(FAST * sound(experiment.materials[experiment.bodies[name].material]) for name in names)
     told = drive(experiment)
+    refuse_through(experiment, names, outlines, told)
+    slowest = min(FAST * sound(experiment.materials[experiment.bodies[name].material]) for name in names)
     for t, name in enumerate(experiment.tools):
         if told.fastest(t, 0.0, experiment.time.end) > slowest and told.tools.light[t] == 0.0:
             said = f"a place on it goes {told.fastest(t, 0.0, experiment.time.end):.3g} m/s, over {FAST:g} of the speed of sound of what it meets"
             raise SceneError(("tools", name, "motion"), f"{said}: take at most {slowest:.3g} m/s")
 
 
+def refuse_through(experiment, names, outlines, told) -> None:
+    """SceneError where a tool is told to go into a body that stands still: looked for at LOOKS times of its way."""
+    h = experiment.grid.cell
+    still = [(body, other) for body, other in zip(names, outlines, strict=True) if experiment.materials[experiment.bodies[body].material].elastic is None]
+    for name, way in zip(experiment.tools, told.told if told is not None and still else (), strict=False):
+        one, (begin, end) = outline(experiment, experiment.tools[name]), way.there
+        for when in np.linspace(begin, min(end, experiment.time.end), LOOKS) if len(way.times) > 1 else ():
+            shift = np.array([np.interp(when, way.times, along) - along[0] for along in way.path.T])
+            for body, other in still:
+                if deepest(one.moved(shift), other, h)[0] > OVERLAP * h:
+                    said = f"at {when:.3g} s it would stand in {body}, which has no `elastic` and stands still: end its way before that"
+                    raise SceneError(("tools", name, "motion"), said)
+
+
 def sound(material) -> float:
-    """A speed of sound [m/s], sqrt(M/rho); infinite where the moduli follow temperature."""
-    law = elastic_law(material.elastic)
+    """A speed of sound [m/s], sqrt(M/rho); infinite where the moduli follow temperature, and of what stands still."""
+    law = elastic_law(material.elastic) if material.elastic is not None else None
     return math.sqrt((law.lam + 2 * law.mu) / material.density) if hasattr(law, "lam") else math.inf
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import mpm
 from mpm.benchmarks.costs import CONFIGS, SCENES, measure
-from mpm.contact.outlook import fall, near_share
+from mpm.contact.outlook import fall, near_shares
 from mpm.costs import estimate
 from mpm.scene.build import build
 
@@ -28,6 +28,10 @@ def test_more_costs_more():
 )  # fmt: skip
 def test_when_a_gap_is_closed(gap, speed, pull, time):
     assert fall(gap, speed, pull) == pytest.approx(time, rel=1e-12)
+
+
+def near_share(scene, *told, settles):
+    return max((part for part, _ in near_shares(scene, *told, settles)), default=0.0)
 
 
 def test_contact_costs_from_when_something_is_near():

@@ -43,6 +43,7 @@ REFUSED = {
     "time scaling and a tool": (pressed(1) | {"time": {"end": 1.0, "scale": 10}}, "tools.press"),
     "welded apart": (conducting(1, 8) | {"contacts": [{"between": ["hot", "cold"], "welded": {}}]}, "contacts.0"),
     "a tool in a body": (pressed(1) | {"tools": {"press": {"shape": {"box": {"lower": [0.9], "upper": [1.5]}}}}}, "tools.press.shape"),
+    "a small round tool": (pressed(2) | {"tools": {"press": {"shape": {"ball": {"centre": [0.4, 1.3], "radius": 0.1}}}}}, "tools.press.shape"),
     "a thin tool": (pressed(1) | {"tools": {"press": {"shape": {"box": {"lower": [1.0], "upper": [1.1]}}}}}, "tools.press.shape"),
 }
 REFUSED["welded apart"][0]["bodies"]["cold"]["shape"] = {"box": {"lower": [0.7], "upper": [1.2]}}

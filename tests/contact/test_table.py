@@ -117,3 +117,27 @@ def test_a_rigid_disc_pressed_into_a_block():
     scene["tools"] = {"disc": {"shape": {"ball": {"centre": [0.75, 1.4], "radius": 0.4}}, "motion": {"path": path}}}
     s = compiled(scene)
     assert s["force_bottom_y"][-1] > 0.1 and s["force_bottom_y"][-1] == pytest.approx(-s["force_disc_y"][-1], rel=1e-3)
+
+
+@pytest.mark.parametrize("stiff", [1.0, 4.0])
+def test_a_disc_on_a_disc(core, stiff):
+    """Pressed by a plate: half the width of their contact, 2 sqrt(<x^2>), is Hertz's, b^2 = 4 F (R/2)/(pi E*), to 10 % at 1.4 cells."""
+    R, h, nu, b = 0.5, 1 / 16, 0.3, 1.4 / 16
+    joint = 1 / ((1 - nu**2) * (1 + 1 / stiff))
+    F = np.pi * joint * b**2 / (4 * R / 2)
+    scene = {
+        "grid": {"dimension": 2, "size": [1.5, 2.5], "cell": h},
+        "bodies": {name: {"shape": {"ball": {"centre": [0.76, y], "radius": R}}, "material": m} for name, m, y in (("low", "m", 0.5), ("high", "k", 1.5))},
+        "materials": {name: {"density": 1.0, "elastic": {"hencky": {"E": E, "nu": nu}}} for name, E in (("m", 1.0), ("k", stiff))},
+        "tools": {"plate": {"shape": {"box": {"lower": [0.0, 2.0], "upper": [1.5, 2.25]}}, "motion": {"force": [0.0, -F], "mass": 0.5}}},
+        "walls": {"bottom": "contact"}, "loads": [{"of": name, "drag": {"rate": 1.0}} for name in ("low", "high")],
+        "time": {"end": 40.0}, "output": {"every": 2.0},
+    }  # fmt: skip
+    built, run = core.play(mpm.load(scene))
+    assert run.outcome.ok and -run.series["force_low_high_y"][-3:] == pytest.approx(F, rel=0.01)
+    touching, body = built.meeting.touching, built.bodies[0]
+    surface, rows = body.surface, touching.rows[7]  # against the second body
+    x = body.particles.x[surface.owner] + np.einsum("sab,sb->sa", surface.F[surface.row[surface.owner]], surface.offset)
+    pressed = -touching.warm[: len(x), rows, 1]
+    middle = np.sum(pressed * x[:, 0]) / np.sum(pressed)
+    assert 2 * np.sqrt(np.sum(pressed * (x[:, 0] - middle) ** 2) / np.sum(pressed)) == pytest.approx(b, rel=0.1)

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from contact_scenes import bars, dropped, pressed
+from scipy.optimize import brentq
 
 import mpm
 from mpm.contact.texture import texture
@@ -62,6 +63,40 @@ def test_a_hot_tool_is_a_hot_wall(plain):
     other["walls"] = {"left": {"contact": {"heat": heat}}}
     tool, wall = (run["series"]["heat_exchanged"] for run in plain([scene, other]))
     assert wall[-1] > 10 and tool == pytest.approx(wall, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_block_that_lands_askew_on_a_hot_tool(plain):
+    """At 23 degrees to the grid, from 0.3 and 1 cells above the face: the heat of the slab's series less the fall's share, to 2 %, and none is lost."""
+    turn, h, beta, kappa, capacity, end, g, drag = math.radians(23), 0.0625, 20.0, 10.0, 100.0, 0.6, 30.0, 30.0
+    along, up = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
+    corner = np.array([0.85, 0.6])  # of the tool's upper face, its middle
+    roots = [brentq(lambda m: m * math.sin(m) - beta * 0.5 / kappa * math.cos(m), i * math.pi + 1e-9, i * math.pi + math.pi / 2) for i in range(60)]
+
+    def heat(t):
+        """Of a slab of 0.5 m that is insulated above, by what it could take in."""
+        b = beta * 0.5 / kappa
+        return 1 - sum(2 * b * b / (m * m * (m * m + b * b + b)) * math.exp(-m * m * kappa / capacity * t / 0.25) for m in roots)
+
+    scenes = []
+    for gap in (0.0, 0.3, 1.0):
+        foot = corner + gap * h * up
+        vertices = [foot + a * along + b * up for a, b in ((-0.125, 0), (0.125, 0), (0.125, 0.5), (-0.125, 0.5))]
+        centre = corner - 0.15 * up
+        box = {"lower": [centre[0] - 0.4, centre[1] - 0.15], "upper": [centre[0] + 0.4, centre[1] + 0.15], "angle": turn}
+        scene = dropped(2, 0.0, drag=drag, E=1000.0, end=end, gravity=(-g * up).tolist(), walls={})
+        scene["grid"] = {"dimension": 2, "size": [1.5, 1.5], "cell": h}
+        scene["bodies"]["block"] |= {"shape": {"polygon": {"vertices": [v.tolist() for v in vertices]}}, "temperature": 300}
+        scene["materials"]["m"]["heat"] = {"fourier": {"kappa": kappa, "alpha": capacity}}
+        scene["tools"] = {"pan": {"shape": {"box": box}, "heat": {"beta": beta, "temperature": 400}}}
+        scenes.append(scene)
+    runs = plain(scenes)
+    most = 100 * 0.25 * 0.5 * capacity
+    for gap, run in zip((0.0, 0.3, 1.0), runs, strict=True):
+        fall = brentq(lambda t, gap=gap: g / drag * t - g / drag**2 * (1 - math.exp(-drag * t)) - gap * h, 0.0, 1.0)
+        assert run["kind"] == "completed" and np.abs(run["series"]["heat_ledger"]).max() < 1e-12 * most
+        assert run["series"]["heat_exchanged"][-1] / runs[0]["series"]["heat_exchanged"][-1] == pytest.approx(heat(end - fall) / heat(end), rel=0.02)
+    assert runs[0]["series"]["heat_exchanged"][-1] == pytest.approx(most * heat(end), rel=0.02)
 
 
 def test_a_path_goes_down_and_up(plain):

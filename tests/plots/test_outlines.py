@@ -74,6 +74,28 @@ def test_a_tool_comes_and_goes_and_a_pushed_one_is_not_known():
     assert [known for _, _, known in outlines.tools(pushed.resolved(), 0.5)] == [False]
 
 
+NOZZLES = {
+    2: ({"box": {"lower": [0.06, 0.03], "upper": [0.1, 0.05]}}, {"velocity": [{"table": {"time": [0, 1], "value": [-0.1, 0]}}, 0]},
+        [([0.06, 0.03], [0.1, 0.03]), ([0.06, 0.05], [0.1, 0.05])]),
+    "axisymmetric": ({"cylinder": {"radius": 0.01, "height": 0.02, "base": [0, 0.08]}}, {"rate": 1e-6}, [([0.01, 0.08], [0.01, 0.1])]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("dimension", NOZZLES)
+def test_a_nozzle_is_drawn_open_while_it_flows(dimension):
+    """The sides along the flow, by its velocity or its weight; not before and not after."""
+    from mpm.scene.inflow import column
+
+    shape, flow, sides = NOZZLES[dimension]
+    data = scene(dimension, SHAPES["box" if dimension == 2 else "piston"][1], {}).resolved() | {"tools": {}, "gravity": [0, -9.81]}
+    data["bodies"]["s"] = {"shape": shape, "material": "m", "inflow": flow | {"from": 0.2, "until": 0.7}}
+    experiment = mpm.load(data)
+    assert [len(list(outlines.nozzles(experiment.resolved(), when))) for when in (0.1, 0.2, 0.6, 0.7)] == [0, 1, 1, 0]
+    ((name, lines, _),) = outlines.nozzles(experiment.resolved(), 0.5)
+    assert name == "s" and np.array(lines) == pytest.approx(np.array(sides), abs=1e-15)
+    assert lines[0][:, (found := column(experiment, "s")).axis].tolist().count(found.mouth) == 1
+
+
 @pytest.mark.parametrize(("dimension", "sides"), [(2, 4), ("axisymmetric", 3), (3, 6)])
 def test_walls_lie_on_the_sides_and_named_ones_are_told(dimension, sides):
     shape = next(said for at, said in SHAPES.values() if at == dimension)
