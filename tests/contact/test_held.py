@@ -42,6 +42,7 @@ def test_a_block_lands_on_a_body_that_stands():
     assert s["force_block_stone_x"][-1] == pytest.approx(s["mass_total_block"][0], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_it_rubs():
     """Down a stone of 25 degrees with g (sin - mu cos), to 0.5 %, once it bears: let go at once, friction is late by 2 ms."""
     s, c, mu = np.sin(np.radians(25)), np.cos(np.radians(25)), 0.2

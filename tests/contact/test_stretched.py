@@ -24,6 +24,7 @@ def squeezed(far):
     return scene
 
 
+@pytest.mark.slow
 def test_both_stretched():
     """Squeezed to a fifth, the faces between them grow five times and less."""
     run = mpm.run_point(mpm.load(squeezed(0.8)))
