@@ -23,7 +23,7 @@ Further files
     found      the contacts of one step
     insync     velocities at the time of the positions
     outlook    how much of a run has something near, from its start alone
-    step_threaded  the same for a scene in slabs, by threads
+    step_threaded  the same for a scene in slabs, by threads; solve_threaded its impulses
     texture    what a press that bites twice says of a body
     triangles  signed distance of a closed triangle mesh
     held       bodies that stand still beside others that move

@@ -3,7 +3,8 @@
 A = sum W_A^2/m_i + sum W_B^2/m_j, the same for every direction;   lambda_n <- max(0, lambda_n - (u_n + max(g/dt, -PUSH c))/A),
 lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when no contact changes its speed by more than CLOSE c, or after SWEEPS.
 A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
-Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work.
+Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work;
+of scenes in slabs: solve_threaded.py.
 """
 
 from typing import Any, NamedTuple
@@ -82,10 +83,28 @@ def press(space, problem, dt, sound, warm, rows, close):
     warm (P, against, D): impulses of the step before; rows (against,): where they are kept. Those of contacts far off are zero.
     Ends when none changes its speed by more than `close` times that of sound.
     """
-    contacts, count, D = problem.contacts, len(problem.impulse), directions(space)
-    inverse, live, lively = np.zeros(count), np.empty(count, np.int64), 0
-    u = np.zeros(WIDE)
+    count, D = len(problem.impulse), directions(space)
+    inverse, live, lively, u = np.zeros(count), np.empty(count, np.int64), 0, np.zeros(WIDE)
+    ready(space, problem, (0, count), dt, warm, rows, inverse)
     for i in range(count):
+        if inverse[i] > 0.0:
+            live[lively] = i
+            lively += 1
+    for k in range(lively):
+        begin(problem, live[k], D, warm, rows, u)
+    for sweep in range(SWEEPS):
+        worst = 0.0
+        for k in range(lively):
+            worst = max(worst, one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u))
+        if worst <= close * sound:
+            break
+
+
+@kernel
+def ready(space, problem, some, dt, warm, rows, inverse):
+    """1/A of the contacts some[0] <= i < some[1] that bore an impulse, or are so near that they might; the others' stays zero."""
+    contacts, D, u = problem.contacts, directions(space), np.zeros(WIDE)
+    for i in range(some[0], some[1]):
         weight = lightness(problem.tools, contacts.free[i])
         borne(problem, i, u)
         most = weight + max(u[0], u[1], u[2])
@@ -96,16 +115,7 @@ def press(space, problem, dt, sound, warm, rows, close):
             if contacts.piece[i] >= 0:
                 before += warm[contacts.piece[i], rows[contacts.against[i]], c] * contacts.normal[i, c]
         if most > 0.0 and (before > 0.0 or contacts.gap[i] + 1.5 * dt * closing < SURE * space.h):
-            inverse[i], live[lively] = 1.0 / most, i
-            lively += 1
-    for k in range(lively):
-        begin(problem, live[k], D, warm, rows, u)
-    for sweep in range(SWEEPS):
-        worst = 0.0
-        for k in range(lively):
-            worst = max(worst, one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u))
-        if worst <= close * sound:
-            break
+            inverse[i] = 1.0 / most
 
 
 @kernel(inline=True)

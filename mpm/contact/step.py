@@ -135,12 +135,25 @@ def seek(space, bodies, touching, skin):
 @kernel
 def resolve(method, touching, skin, grids, now, pace, near):
     """The impulses of the contacts, on the nodes; near: contacts, how many, weights."""
-    (contacts, count, weights), space = near, method.space
-    D, shape, nodes, force = directions(space), extents(space), grids.nodes[:, now], grids.force[:, now]
+    (contacts, count, weights), space, nodes = near, method.space, grids.nodes[:, now]
     problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
-    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows, COARSE if nodes.itemsize == 4 else CLOSE)
+    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows, closeness(nodes))
+    finish(method, touching, skin, grids, now, pace.dt, problem)
+
+
+@kernel
+def closeness(nodes):
+    """Of the speed of sound: the change of speed at which sweeps end."""
+    return COARSE if nodes.itemsize == 4 else CLOSE
+
+
+@kernel
+def finish(method, touching, skin, grids, now, dt, problem):
+    """Nodes and books after the impulses are found."""
+    space, nodes, force = method.space, grids.nodes[:, now], grids.force[:, now]
+    D, shape = directions(space), extents(space)
     settle(space, problem, nodes, force)
-    if keep_books(space, touching, skin, problem, pace.dt):
+    if keep_books(space, touching, skin, problem, dt):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
             if wants_change(method.scheme):

@@ -1,21 +1,21 @@
 """The mechanical step where something is near, of a scene in slabs: integrate/step_threaded.py with the contacts of step.py between scatter and gather.
 
 What a contact needs of the particles near it goes by slabs too, even ones before odd ones, and its weights go by parts of the contacts: any number of
-threads gives the same bits. Which pieces are near, and the impulses, are one thread's.
+threads gives the same bits. So do the impulses (solve_threaded.py). Which pieces are near is one thread's.
 """
 
 import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
 from mpm.contact.skin import new_skin
-from mpm.contact.step import after_contacts, before_contacts, resolve, seek
+from mpm.contact.solve import pose
+from mpm.contact.solve_threaded import PART, press_in_slabs
+from mpm.contact.step import after_contacts, before_contacts, closeness, finish, seek
 from mpm.contact.weights import fall_short, mark, new_weights, shares, unmark
 from mpm.integrate.step_parts import method_of, scratch
 from mpm.integrate.step_threaded import steps_in_slabs, wave
 from mpm.jit import kernel
 from mpm.state import PAD
-
-PART = 256  # contacts that are weighed by one thread
 
 
 @kernel
@@ -33,8 +33,11 @@ def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
         before_contacts(method, bodies, chunk, touching, grids, (step, now), scene.gravity, pace)
         contacts, count = seek(scene.space, bodies, touching, skin)
         if count > 0:
-            weights = weigh_in_slabs(scene, touching, skin, (contacts, count), grids.nodes[:, now], slabs, crew)
-            resolve(method, touching, skin, grids, now, pace, (contacts, count, weights))
+            nodes = grids.nodes[:, now]
+            weights = weigh_in_slabs(scene, touching, skin, (contacts, count), nodes, slabs, crew)
+            problem = pose(scene.space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
+            press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, closeness(nodes), slabs, crew)
+            finish(method, touching, skin, grids, now, pace.dt, problem)
         after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, slabs.reports[-1])
 
     return steps_in_slabs(scene, method, grids, touching.fields, between, (pace.dt, pace.kick, pace.steps, pace.begun), True, reports)
