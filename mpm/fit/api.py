@@ -75,7 +75,7 @@ def run(
     """Fit in a folder; `Stopped` where it was told to stop: the same call goes on."""
     from mpm.fit.write import write
 
-    problem = read(experiment, hold_out)
+    problem = read(experiment, hold_out, short=options is not None and options.smoke)
     if posterior:
         from mpm.fit.posterior import needed
 

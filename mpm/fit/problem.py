@@ -94,6 +94,7 @@ class Problem:
     seed: int
     known_sigma: bool
     step: float = 1e-3  # in u, of differences
+    left_out: tuple[str, ...] = ()  # curves of which a short run reaches no time
 
     @property
     def names(self) -> list[str]:
@@ -122,8 +123,8 @@ class Problem:
         return found if np.isfinite(found).all() else None
 
 
-def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
-    """The problem of a config; Refused where it asks for none."""
+def read(experiment: Any, hold_out: tuple[str, ...] = (), short: bool = False) -> Problem:
+    """The problem of a config; Refused where it asks for none. `short`: of a smoke run, which goes without the curves that it does not reach."""
     asked, measured = experiment.fit, experiment.output.measured
     if asked is None:
         raise Refused("the config has no `fit:` section; say fit: {parameters: {kappa: [0.1, 1]}}, and the curves under output.measured")
@@ -132,6 +133,9 @@ def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
     names = [name for name in asked.data or measured if name not in hold_out]
     if not names:
         raise Refused("every curve is held out, and none is left to fit to")
+    left_out = tuple(name for name in (*names, *hold_out) if short and first_time(experiment, name) > last_time(experiment))
+    if set(names) <= set(left_out):
+        raise beyond(experiment, names[0], "smoke.time.end")
     known = Names(experiment)
     variation = Vary(ranges(asked), known).read()
     parameters = []
@@ -141,9 +145,8 @@ def read(experiment: Any, hold_out: tuple[str, ...] = ()) -> Problem:
         start = float(value) if isinstance(value, float | int) else math.sqrt(low * high) if one.log else (low + high) / 2
         units = one.slot.quantity.units if one.slot.quantity else "1"
         parameters.append(Parameter(one.short, one.spoken, low, high, one.log, min(max(start, low), high), units, one.slot.description or one.short))
-    curves = {name: curve_of(experiment, name) for name in (*names, *hold_out)}
-    problem = Problem(experiment, tuple(parameters), tuple(curves[name] for name in names), tuple(curves[name] for name in hold_out), asked.starts, asked.seed,
-                      curves[names[0]].sigma is not None, asked.step)  # fmt: skip
+    curves, held = (tuple(curve_of(experiment, name) for name in listed if name not in left_out) for listed in (names, hold_out))
+    problem = Problem(experiment, tuple(parameters), curves, held, asked.starts, asked.seed, curves[0].sigma is not None, asked.step, left_out)
     if problem.size < len(parameters):
         raise Refused(f"{len(parameters)} parameters cannot be found from {problem.size} measured value{'s' * (problem.size != 1)}")
     return problem
@@ -157,12 +160,28 @@ def curve_of(experiment: Any, name: str) -> Curve:
         sigma = None if curve.sigma is None else np.array([curve.sigma])
         return Curve(name, variable, None, np.array([curve.equals]), sigma, curve.weight, units)
     rows = np.array(curve.samples, dtype=float)
-    late = rows[:, 0] > experiment.time.end * (1 + 1e-9)
+    late = rows[:, 0] > last_time(experiment)
     if late.all():
-        raise Refused(f"output.measured.{name}: every measured time lies after the end of the run, {experiment.time.end:g} s")
+        raise beyond(experiment, name)
     rows = rows[~late]
     sigma = rows[:, 2] if rows.shape[1] > 2 else None if curve.sigma is None else np.full(len(rows), curve.sigma)
     return Curve(name, variable, rows[:, 0], rows[:, 1], sigma, curve.weight, units, curve.file, int(late.sum()))
+
+
+def last_time(experiment: Any) -> float:
+    """The end of a run [s], with what rounding may add."""
+    return experiment.time.end * (1 + 1e-9)
+
+
+def first_time(experiment: Any, name: str) -> float:
+    """When a curve begins [s]; at the start where it is one number a run."""
+    return min((float(row[0]) for row in experiment.output.measured[name].samples), default=0.0)
+
+
+def beyond(experiment: Any, name: str, key: str = "time.end") -> Refused:
+    """The refusal of a curve of which the run reaches no time."""
+    end, first = experiment.time.end, first_time(experiment, name)
+    return Refused(f"output.measured.{name}: every measured time lies after the end of the run, {end:g} s; set {key} to {first:g} s or later")
 
 
 def bare(experiment: Any) -> Any:

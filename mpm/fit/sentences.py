@@ -102,7 +102,8 @@ def held(done: Any) -> list[str]:
 
 def doubts(done: Any) -> list[str]:
     """What a careful user wants to know of the intervals."""
-    problem, known, said = done.problem, done.known, []
+    problem, known = done.problem, done.known
+    said = [f"{name} is left out: it was measured after the end of this short run" for name in problem.left_out]
     if not done.searches.best.converged:
         said.append(f"the search did not converge: {done.searches.best.why}")
     elif not done.converged:

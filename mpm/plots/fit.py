@@ -11,6 +11,8 @@ from mpm.plots.style import FAINT, INK, OKABE_ITO, QUIET, SMALL, Plain, figure, 
 from mpm.records.variables import describe
 from mpm.text import amount
 
+WIDEST = 1.0  # half of a band, over all that model and measurement span: beyond it the band is not drawn
+
 
 def draw(tree: Any) -> Any:
     """From fit.nc to a figure."""
@@ -51,15 +53,17 @@ def panel(ax: Any, left: Any, root: Any, curves: Any, unit: str) -> None:
             if np.isnan(times).all():
                 continue
             said = said.partition(":")[0]
+        if f"fitted_{name}" in curves:
+            fitted, half = curves[f"fitted_{name}"].values, curves[f"band_{name}"].values
+            known = half <= WIDEST * np.ptp([*fitted, *values])  # nor where it is no number
+            ax.plot(clock(curves.time.values), scale(fitted), color=colour, lw=1.5)
+            ax.fill_between(clock(curves.time.values), scale(fitted - half), scale(fitted + half), known, color=colour, alpha=0.2, lw=0)
+            said += "" if known.all() else "; the data leave its band open"
         ax.plot(clock(times), scale(values), "o", ms=4.5, mfc="white" if held else colour, mec=colour, label=said)
         ax.set(xlabel=f"time [{clock.units}]", ylabel=words.wrapped(words.with_units(quantity(str(root["variable"].values[k])), scale.units), 30))
         if len(times) > 1:
             left.plot(clock(times), residual, "o-", ms=3.5, lw=0.8, mfc="white" if held else colour, mec=colour, color=colour)
             left.set(xlabel=f"time [{clock.units}]", ylabel=words.with_units("difference", scale.units.replace("°C", "K")))
-        if f"fitted_{name}" in curves:
-            fitted, half = curves[f"fitted_{name}"].values, np.nan_to_num(curves[f"band_{name}"].values)
-            ax.plot(clock(curves.time.values), scale(fitted), color=colour, lw=1.5)
-            ax.fill_between(clock(curves.time.values), scale(fitted - half), scale(fitted + half), color=colour, alpha=0.2, lw=0)
     ax.set_title("measured (dots), model with its 95 % band (line)")
     if left.lines:
         left.axhline(0, color=QUIET, lw=0.8)

@@ -131,9 +131,10 @@ class Figure:
 
     def legend(self, fig: Any, axes: Any) -> None:
         """Under the first panel of the last row: marks, then theory."""
-        marks = [Line2D([], [], marker="o", ms=3.5, color=INK, label="measured boundary")]
+        found = np.isfinite(self.root.within.values) & np.isfinite(self.root.beyond.values)
+        marks = [Line2D([], [], marker="o", ms=3.5, color=INK, label="measured boundary")] if found.any() else []
         marks += [Line2D([], [], ls="None", marker="o", ms=4, color=WITHIN, label="completed")]
-        marks += [Line2D([], [], ls="None", marker=MARKS[k % len(MARKS)], color=BEYOND, label=cause.replace("_", " ")) for k, cause in enumerate(self.causes)]
+        marks += [Line2D([], [], ls="None", marker=MARKS[k % len(MARKS)], color=BEYOND, label=in_words(cause)) for k, cause in enumerate(self.causes)]
         lines = []
         if "expected" in self.root:
             named = dict(zip(map(str, self.root.line_label.values), self.looks(), strict=True))  # lines of one name are one entry
@@ -152,6 +153,20 @@ class Figure:
                 found[label] = {"color": colour, "ls": DASHES[1 + place % 2] if role == "safe" else DASHES[2 + place % 3]}
                 count[role] += 1
         return [found[label] for label in self.root.line_label.values]
+
+
+def in_words(cause: str) -> str:
+    """Why a point is beyond: an outcome, or `steps_failed above 0.5` by what it means, `steps that found no balance and were cut`."""
+    name, above, most = cause.partition(" above ")
+    if not above:
+        return cause.replace("_", " ")
+    try:
+        meaning = describe(name).long_name
+    except KeyError:
+        return f"{name.replace('_', ' ')} above {most}"
+    if name.startswith("steps_") and float(most) < 1:
+        return meaning.rpartition(": ")[2]
+    return f"{words.short(meaning)}: above {most}"
 
 
 def positive(values: np.ndarray) -> bool:

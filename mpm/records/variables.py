@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from mpm.records.patterns import AT_PROBE, BITES, IN_DATASET, MEETING, MET, PROBED, SINGLE, THRESHOLD
+from mpm.records.patterns import AT_PROBE, BITES, IN_DATASET, MEETING, MET, PROBED, SINGLE, THRESHOLD, pair
 
 POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
 STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
@@ -256,7 +256,7 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
         whole = replace(VARIABLES[summed[0]], name=name, long_name=f"{VARIABLES[summed[0]].long_name}, of {summed[1].replace('_', ' ')}")
     elif whole is None and (meeting := met(name)):
         what, of, axis = meeting
-        said = MET[what][1].format(of.replace("_", " ")) + (f", along {axis}" if axis else "")
+        said = MET[what][1].format(of.replace("_", " "), *pair(of)) + (f", along {axis}" if axis else "")
         whole = Variable(name, "", MET[what][0], POINT if what in BITES else SERIES, said)
     if whole is not None and is_total(name) and dimension in PER:
         units, share = PER[dimension]

@@ -153,7 +153,7 @@ class Engine:
         jobs = tuple(Job(run_id, self.configs.take(run_id), self.attempts[run_id]) for run_id in run_ids)
         seen = self.options.checkpoint if self.options.scheduler in (None, "local") or self.options.shared else 0.0  # elsewhere a folder would not last
         task = Task(jobs, str(self.store.out.resolve()), next(self.names) if len(jobs) > 1 else "", seen)
-        self.running[task.id] = Running(task, time.monotonic())
+        self.running[task.id] = Running(task.sent, time.monotonic())
         self.resources.given[task.id] = need
         executor.submit(task)
         return True

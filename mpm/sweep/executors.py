@@ -9,7 +9,7 @@
 An executor knows nothing of retries, order or progress: that is the engine's.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 
@@ -39,6 +39,11 @@ class Task:
     def id(self) -> str:
         """Its first point's run id: no point is in two tasks at once."""
         return self.jobs[0].run_id
+
+    @property
+    def sent(self) -> "Task":
+        """What is kept of it once a worker has it: the same without configs, which take more than all else that a sweep holds of its points."""
+        return replace(self, jobs=tuple(replace(job, config={}) for job in self.jobs))
 
     def message(self) -> dict:
         """As plain JSON."""

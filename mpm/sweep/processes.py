@@ -116,7 +116,7 @@ class Processes:
     def submit(self, task: Task) -> None:
         """Give a task to an idle worker."""
         child = next(child for child in self.children.values() if child.state == "idle")
-        child.state, child.task = "busy", task
+        child.state, child.task = "busy", task.sent
         child.order({"do": "task", "task": task.message()})
 
     def poll(self, timeout: float) -> list[Event]:

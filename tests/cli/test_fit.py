@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 
+from mpm.plots.fit import draw
+
 SCENE = """\
 grid: {dimension: 1, size: [0.05], cell: 0.004}
 bodies: {slab: {shape: {box: {lower: [0.005], upper: [0.045]}}, temperature: 298.15, material: dough}}
@@ -51,8 +53,19 @@ def test_it_answers_writes_and_does_nothing_twice(mpm, scene, tmp_path):
     assert {"best", "covariance", "correlation", "interval", "misfit"} <= set(tree.data_vars)
     assert tree["evaluations"].sizes["point"] == found["points"] == found["ran"]
     assert (tmp_path / "out" / "fit.png").stat().st_size > 10_000
+    assert_an_open_band_is_told_and_not_drawn(tree.load())
     again = json.loads(mpm("fit", scene, "-o", tmp_path / "out", "-j", "1", "--json", "--hold-out", "face").stdout)
     assert again["ran"] == 0 and again["parameters"] == found["parameters"]
+
+
+def assert_an_open_band_is_told_and_not_drawn(tree):
+    """Where two points determine nothing a band of 1e7 K would leave of the curves a line."""
+    tree["curves"] = tree["curves"].to_dataset().assign(band_centre=("time", [0.0] + 20 * [1e7]))
+    panel = draw(tree).axes[0]
+    low, high = panel.get_ylim()
+    assert 0 < low < high < 150
+    told = [text.get_text() for text in panel.get_legend().get_texts()]
+    assert [text.endswith("; the data leave its band open") for text in told] == [True, False]
 
 
 def test_a_budget_stops_it_and_the_same_command_goes_on(mpm, scene, tmp_path):

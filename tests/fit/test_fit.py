@@ -14,6 +14,7 @@ from mpm.fit.sentences import limits, sentences
 from mpm.records.point import from_run
 from mpm.runner import run_point
 from mpm.sweep.cases import plan
+from mpm.sweep.lock import Refused
 from mpm.sweep.rounds import Rounds
 
 SLAB = {
@@ -95,6 +96,18 @@ def test_a_curve_without_noise_gives_back_its_parameters(truth):
     done = fitted(config(clean(truth), starts=2, seed=3))
     assert len(done.searches.found) == 2
     assert all(far(done.problem, one.u) < 1e-6 for one in done.searches.found)
+
+
+def test_a_short_run_goes_without_the_curves_that_it_does_not_reach(truth):
+    late = measured(truth.series["temperature_face"][-4:], truth.times[-4:])
+    output = {**SLAB["output"], "measured": {**clean(truth, ["centre"]), "face": late}}
+    experiment = load({**SLAB, "time": {"end": 600}, "output": output, "fit": {"parameters": {"kappa": [0.1, 2]}}})
+    problem = read(experiment, short=True)
+    assert problem.left_out == ("face",) and [curve.name for curve in problem.curves] == ["centre"] and problem.curves[0].late == 10
+    with pytest.raises(Refused, match=r"output\.measured\.face: every measured time lies after the end of the run, 600 s; set time.end to 1020 s or later"):
+        read(experiment)
+    with pytest.raises(Refused, match=r"set smoke\.time\.end to 1020 s or later"):
+        read(experiment, hold_out=("centre",), short=True)
 
 
 def test_named_parameters_are_fitted_by_name_and_formulas_follow_them(truth):

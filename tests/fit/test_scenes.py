@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import mpm
+from mpm.config import load
+from mpm.fit.problem import read
 
 SCENES = Path(__file__).parents[2] / "configs" / "scenes"
 
@@ -28,6 +30,13 @@ def test_the_rheometer_gives_back_what_its_curve_was_made_with(tmp_path):
         low, high = root.interval.sel(parameter=name).values
         assert low <= value <= high and high - low < 0.02 * value
     assert root.misfit.values == pytest.approx([5, 0.002], rel=0.25)
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*_fit.yaml")), ids=lambda path: path.stem)
+def test_the_short_form_of_a_fit_has_what_it_needs(path):
+    """It reaches the curves; where it ends sooner there is nothing to fit."""
+    problem = read(load(path, smoke=True), short=True)
+    assert not problem.left_out and problem.size >= len(problem.parameters) and all(curve.late <= 0.1 * len(curve.values) for curve in problem.curves)
 
 
 @pytest.mark.slow

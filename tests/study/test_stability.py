@@ -74,6 +74,33 @@ def test_the_figure_is_drawn(tmp_path):
     figure = draw(tree_of(computed(tmp_path).dataset))
     assert save(figure, tmp_path / "map.png").stat().st_size > 10_000
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["clipped"]
+    beyond = "largest error against the exact solution, over the largest value of each quantity: above 0.01"
+    assert [entry.get_text() for entry in figure.legends[0].get_texts()] == ["measured boundary", "completed", beyond, "first order"]
+
+
+def test_a_map_without_a_boundary_names_none(tmp_path):
+    from mpm.plots.stability import draw
+    from mpm.sweep.api import tree_of
+
+    tree = tree_of(computed(tmp_path, beyond={"error_relative": 1e9}).dataset)
+    assert np.isnan(tree.boundary.values).all()
+    assert [entry.get_text() for entry in draw(tree).legends[0].get_texts()] == ["completed", "first order"]
+
+
+@pytest.mark.parametrize(
+    ("outcome", "said"),
+    [
+        ("too_many_steps", "too many steps"),
+        ("steps_failed above 0.5", "steps that found no balance and were cut"),
+        ("steps_failed above 3", "implicit mechanics: above 3"),
+        ("heat_ledger above 0.04", "heat content gained less heat taken in: above 0.04"),
+        ("no_such above 1", "no such above 1"),
+    ],
+)
+def test_why_a_point_is_beyond_is_said_in_words(outcome, said):
+    from mpm.plots.stability import in_words
+
+    assert in_words(outcome) == said
 
 
 def test_growth_rates_are_shades_and_lines_of_one_name_one_entry(tmp_path):
