@@ -33,7 +33,7 @@ from mpm_cli.status import status
 from mpm_cli.streams import streams
 from mpm_cli.sweep import sweep
 from mpm_cli.talk import internal, leave_at_once, warn
-from mpm_cli.unseen import unseen
+from mpm_cli.unseen import openssl, unseen
 from mpm_cli.verify import verify
 from mpm_cli.warmup import warmup
 
@@ -87,7 +87,8 @@ def main(arguments: list[str] | None = None) -> int:
         warnings.simplefilter("ignore")  # what users should know has words of its own; `python -W` shows the rest
     words = sys.argv[1:] if arguments is None else arguments
     whole = arguments is not None or any(word.startswith("--scheduler") for word in words)  # somebody else's process, or one that speaks to a cluster
-    with streams() as (out, err), unseen(*(() if whole else ("dask", "babel"))):
+    hidden = () if whole else ("dask", "babel", *(openssl() if words[:1] == ["sweep"] else ()))
+    with streams() as (out, err), unseen(*hidden):
         code = command_code(words)
         out.flush()
     return code or out.code or err.code

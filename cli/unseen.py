@@ -3,6 +3,14 @@
 import contextlib
 import sys
 from collections.abc import Iterator
+from importlib.util import find_spec
+
+OWN = ("_md5", "_sha1", "_sha3", "_blake2", *(("_sha2",) if sys.version_info >= (3, 12) else ("_sha256", "_sha512")))  # Python's own hashes
+
+
+def openssl() -> tuple[str, ...]:
+    """OpenSSL's hashes, 3.6 MB that a sweep's process can do without: it hashes little. Nothing where Python was built without its own."""
+    return ("_hashlib",) if all(map(find_spec, OWN)) else ()
 
 
 @contextlib.contextmanager

@@ -45,12 +45,14 @@ def test_the_same_again_is_quick_and_needs_no_numba(mpm, write, tmp_path):
 
 
 def test_a_sweep_leaves_numba_to_its_workers(write, tmp_path):
-    """Its own process stays small: kernels and what they need are loaded where points run; the dataset is made and drawn by others."""
+    """Its own process stays small, under 70 MB: kernels and what they need are loaded where points run; the dataset is made and drawn by others."""
     fakes = str(Path(__file__).parents[1] / "fakes")
     code = f"import sys; sys.path.insert(0, {fakes!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'\n"
-    code += f"from mpm_cli.main import main; code = main(['sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']); "
-    code += "print(code, sorted({'numba', 'xarray', 'pandas', 'matplotlib', 'h5py'} & set(sys.modules)))"
-    assert fresh(code, tmp_path)[0].endswith("0 []\n") and (tmp_path / "s/sweep.png").stat().st_size > 1000
+    code += f"sys.argv = ['mpm', 'sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']; from mpm_cli.main import main; code = main()\n"
+    code += "peak = next((int(row.split()[1]) for row in open('/proc/self/status') if row.startswith('VmHWM')), 0)\n"
+    code += "heavy = {'numba', 'xarray', 'pandas', 'matplotlib', 'h5py', '_hashlib'}; print(code, sorted(heavy & set(sys.modules)), peak)"
+    ended, loaded, peak = fresh(code, tmp_path)[0].rsplit(maxsplit=2)
+    assert (ended, loaded) == ("0", "[]") and int(peak) * 1024 < 70e6 and (tmp_path / "s/sweep.png").stat().st_size > 1000
 
 
 def test_json_is_one_document_and_talk_goes_to_stderr(mpm, write):
