@@ -62,7 +62,8 @@ class Plain(Reporter):
         """Said once of each kernel that takes long; `expected` in seconds."""
         what = text.partition(":")[0]
         if what and what != self.compiled and expected > LONG and not self.failures_only:
-            self.write(f"{what}, once on this machine: about {expected:.0f} s")
+            which = text.rpartition("kernel ")[2].partition(",")[0]
+            self.write(f"{what}, kernel {which}, once on this machine: about {expected:.0f} s")
         self.compiled = what or self.compiled
 
     def note(self, text: str) -> None:

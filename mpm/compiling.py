@@ -25,7 +25,8 @@ from mpm.fingerprint import contained, digest, rooms
 
 NAMES = {
     "advance": "the mechanical step", "advance_lanes": "the mechanical step", "heat_step": "the heat step", "heat_chebyshev": "the heat step",
-    "heat_implicit": "the heat step", "advance_touching": "the step of bodies that touch",
+    "heat_implicit": "the heat step", "advance_touching": "the step of bodies that touch", "advance_total": "the step of the total frame",
+    "nodal": "sums over nodes",
 }  # fmt: skip
 USUAL = (25, 0.5)  # functions, and seconds, of a kernel never met
 MET = {  # of the large ones, on an idle core of the machine of docs/speed.md; `advance_touching` after `advance`
@@ -66,7 +67,8 @@ class Spent:
         about = max(about, self.functions)
         left = max(seconds - (now - self.began), LINKING * seconds)
         functions, kernels = f"function {self.functions} of about {about}", f"kernel {self.kernels} of about {max(self.kernels, self.about)}"
-        text = f"compiling {NAMES.get(kernel, kernel)}: {left:.0f} s left, {functions}, {kernels}, once on this machine"  # a narrow terminal cuts its end
+        name = NAMES.get(kernel, f"the kernel {kernel}")
+        text = f"compiling {name}: {left:.0f} s left, {functions}, {kernels}, once on this machine"  # a narrow terminal cuts its end
         for listener in self.heard:
             listener(text, seconds, 0.0)
 

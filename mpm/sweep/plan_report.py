@@ -140,10 +140,10 @@ def in_words(found: dict[str, Any]) -> str:
 def said_groups(groups: list[dict[str, Any]]) -> list[str]:
     """A line for each dimensionless group: value, meaning, what it says could be dropped."""
     several = len({group["body"] for group in groups}) > 1
-    lines = ["groups"] if groups else []
-    for group in groups:
-        name = f"{group['name']} of {group['body']}" if several else group["name"]
-        line = f"  {name:<22} {group['value']:<9.3g} {group['formula']}: {group['meaning']}"
+    lines, names = ["groups"] if groups else [], [f"{group['name']} of {group['body']}" if several else group["name"] for group in groups]
+    width = max(map(len, names), default=0)
+    for name, group in zip(names, groups, strict=True):
+        line = f"  {name:<{width}}  {group['value']:<9.3g} {group['formula']}: {group['meaning']}"
         error = "" if group["error"] is None else f", error about {group['error']:.2g}"
         lines.append(line + (f"; could drop {group['drop']}{error}" if group["drop"] else ""))
     return lines

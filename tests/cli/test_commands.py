@@ -47,8 +47,9 @@ def test_the_same_again_is_quick_and_needs_no_numba(mpm, write, tmp_path):
 def test_a_sweep_leaves_numba_to_its_workers(write, tmp_path):
     """Its own process stays small, under 70 MB: kernels and what they need are loaded where points run; the dataset is made and drawn by others."""
     fakes = str(Path(__file__).parents[1] / "fakes")
-    code = f"import sys; sys.path.insert(0, {fakes!r}); from mpm.sweep import engine; engine.RUNNER = 'fake_runner'\n"
-    code += f"sys.argv = ['mpm', 'sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']; from mpm_cli.main import main; code = main()\n"
+    code = f"import sys; sys.path.insert(0, {fakes!r}); sys.argv = ['mpm', 'sweep', {write([0.2])!r}, '-j', '1', '-q', '-o', 's']; import mpm_cli.main as cli\n"
+    code += "def faked(words, real=cli.command_code):\n    from mpm.sweep import engine; engine.RUNNER = 'fake_runner'; return real(words)\n"
+    code += "cli.command_code = faked; code = cli.main()\n"
     code += "peak = next((int(row.split()[1]) for row in open('/proc/self/status') if row.startswith('VmHWM')), 0)\n"
     code += "heavy = {'numba', 'xarray', 'pandas', 'matplotlib', 'h5py', '_hashlib'}; print(code, sorted(heavy & set(sys.modules)), peak)"
     ended, loaded, peak = fresh(code, tmp_path)[0].rsplit(maxsplit=2)
