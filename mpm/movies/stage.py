@@ -6,7 +6,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 
 from mpm.movies import MovieError
 from mpm.opened import Point, Results
@@ -17,11 +17,12 @@ from mpm.records.variables import VARIABLES
 from mpm.text import visible
 
 FIRST = ("temperature", "stress_mises", "pressure", "J", "velocity", "density", "body")
-BESIDE = 0.6  # of the particles' extent
+BESIDE, BESIDE_WALL = 0.6, 0.1  # of the particles' extent
 BALLS = 3.0  # square points of a dot that is large enough to be shaded as a ball
 LEAST = 1e-6  # Pa: less is round-off
 LETTERS = 14  # of a title in an inch of its panel
 SAMPLES = 12  # snapshots that the limits of colour and space are taken from
+COLOURS = ListedColormap(matplotlib.colormaps["inferno"](np.linspace(0.0, 0.9, 256)), "inferno without its palest end")  # which white paper swallows
 SIDE, UP = np.radians(35.0), np.radians(22.0)  # from where three directions are seen
 
 
@@ -66,13 +67,22 @@ def looks(found: Results, shown: list[Point], of: str | None) -> Look:
     box = np.array([places.min(axis=0), places.max(axis=0)])
     if mirrored:
         box[0, 0], box[1, 0] = -np.abs(box[:, 0]).max(), np.abs(box[:, 0]).max()
-    box = with_tools(box, config, some, mirrored)
+    box = with_tools(with_walls(box, config, mirrored), config, some, mirrored)
     margin = 0.06 * max(np.ptp(box, axis=0).max(), 1e-12)
     box = box + np.array([[-margin], [margin]])
     name = words.title_case(words.short(VARIABLES[field].long_name)) if field in VARIABLES else field
-    bare = ScalarMappable(Normalize(low, high), matplotlib.colormaps["inferno"])
+    bare = ScalarMappable(Normalize(low, high), COLOURS)
     times = words.scale(shown[0].shots.times, "s")
     return Look(field, on_grid, dimension, mirrored, config, box, words.scale(box, "m"), scale, times, bare, words.with_units(name, scale.units))
+
+
+def with_walls(box: np.ndarray, config: dict[str, Any], mirrored: bool) -> np.ndarray:
+    """What is shown, in the plane up to the border of the domain where that is near: the wall there belongs to the picture."""
+    size = np.array((config.get("grid") or {}).get("size", ()), float)
+    if size.shape != (2,):
+        return box
+    border = np.array([[-size[0] if mirrored else 0.0, 0.0], size])
+    return np.where(np.abs(box - border) < BESIDE_WALL * np.ptp(box, axis=0).max(), border, box)
 
 
 def with_tools(box: np.ndarray, config: dict[str, Any], some: list[Any], mirrored: bool) -> np.ndarray:
