@@ -67,13 +67,14 @@ def digest(text: str) -> str:
 
 def figures(found: Results) -> list[dict[str, Any]]:
     """Figures as pictures in the page, each with what it shows in words."""
-    from mpm.plots import drawn
+    from mpm.plots import drawn, words
 
     view, made = found.view, []
+    said = lambda names, none: ", ".join(words.short(view.long_name(name)) for name in names) or none  # noqa: E731
     varied = " and ".join(axis.name for axis in view.axes) or view.design or "time"
-    kinds = [("overview", f"Overview: {', '.join(view.long_name(name) for name in view.finals[:2]) or 'no result'}, over {varied}.")]
+    kinds = [("overview", f"Overview: {said(view.finals[:2], 'no result')}, over {varied}.")]
     if (view.axes or view.design) and (view.series_names() or not view.ok.any()):
-        kinds.append(("series", f"Over time: {', '.join(view.long_name(name) for name in view.series_names()[:3]) or 'nothing'}, of a few points."))
+        kinds.append(("series", f"Over time: {said(view.series_names()[:3], 'nothing')}, of a few points."))
     if found.points()[0].shots.times.size:
         kinds.append(("snapshot", "Snapshots of the point that stands for the sweep."))
     for name, alt in kinds:
