@@ -143,8 +143,8 @@ def expect(experiment: Any) -> None:
 
 
 def begun() -> bool:
-    """Whether this was asked before: the first run of a process is the one that may have to compile."""
-    before, spent.begun = spent.begun, True
+    """Whether this was asked before: the first run of a process is the one that may have to compile. Kernels count from here on, others were not for this run."""
+    before, spent.begun, spent.kernels = spent.begun, True, 0
     return before
 
 
