@@ -143,7 +143,7 @@ def expect(experiment: Any) -> None:
 
 
 def begun() -> bool:
-    """Whether this was asked before: the first run of a process is the one that may have to compile. Kernels count from here on, others were not for this run."""
+    """Whether this was asked before: the first run of a process is the one that may have to compile. Kernels count from here on: others were not its."""
     before, spent.begun, spent.kernels = spent.begun, True, 0
     return before
 
