@@ -43,7 +43,7 @@ def row(name: str, value: float, experiment: Any) -> tuple[str, str, str]:
     from mpm.plots import words
     from mpm.records.variables import describe
 
-    found = describe(name, experiment.grid.dimension, experiment.output.probes)
+    found = describe(name, experiment.grid.dimension, experiment.output.probes, experiment.bodies)
     return words.title_case(words.short(found.long_name)), value_in_words(value, found.units, words.is_temperature(name)), name
 
 

@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from mpm.records.patterns import AT_PROBE, BITES, IN_DATASET, MEETING, MET, PROBED, SINGLE, THRESHOLD, pair
+from mpm.records.patterns import AT_PROBE, BITES, IN_DATASET, MEETING, MET, PROBED, SINGLE, THRESHOLD, meets
 
 POINT, SERIES, GRID, PARTICLES = "point", "series", "grid", "particles"
 STATUS = ("ok", "failed", "timeout", "killed", "diverged", "skipped", "pending")  # int8 values 0..6, fixed
@@ -245,10 +245,10 @@ def of_probe(probe: str) -> tuple[str, ...]:
     return f"temperature_{probe}", f"misfit_{probe}", f"measured_temperature_{probe}", f"measured_time_{probe}"
 
 
-def describe(name: str, dimension: int | str | None = None, probes: Iterable[str] = ()) -> Variable:
+def describe(name: str, dimension: int | str | None = None, probes: Iterable[str] = (), bodies: Iterable[str] = ()) -> Variable:
     """The variable of a dataset name; KeyError with the name if there is none. In scenes of dimension 0, 1 and 2 totals are of a part of the body.
 
-    `probes` as in `threshold`.
+    `probes` as in `threshold`, `bodies` as in `meets`.
     """
     whole = VARIABLES.get(name)
     field, _, probe = name.partition("_")
@@ -256,7 +256,7 @@ def describe(name: str, dimension: int | str | None = None, probes: Iterable[str
         whole = replace(VARIABLES[summed[0]], name=name, long_name=f"{VARIABLES[summed[0]].long_name}, of {summed[1].replace('_', ' ')}")
     elif whole is None and (meeting := met(name)):
         what, of, axis = meeting
-        said = MET[what][1].format(of.replace("_", " "), *pair(of)) + (f", along {axis}" if axis else "")
+        said = MET[what][1].format(*meets(what, of, bodies)) + (f", along {axis}" if axis else "")
         whole = Variable(name, "", MET[what][0], POINT if what in BITES else SERIES, said)
     if whole is not None and is_total(name) and dimension in PER:
         units, share = PER[dimension]

@@ -61,7 +61,7 @@ def group(laid: Table, part: TimeColumns, time: np.ndarray, rows: slice) -> Grou
         axes[name] = Array(array.dims, np.asarray(array.data)[cut], array.attrs)
     found.variables["time"] = described("time", ("time",), time, standard_name="time", axis="T")
     for name, values in part.laid(time)[1].items():
-        found.variables[name] = described(name, (*laid.dims, "time"), values.reshape((-1, *laid.shape[1:], len(time))), laid.dimension)
+        found.variables[name] = described(name, (*laid.dims, "time"), values.reshape((-1, *laid.shape[1:], len(time))), laid.dimension, bodies=laid.bodies)
     return with_axes(found, axes)
 
 

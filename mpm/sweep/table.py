@@ -31,9 +31,9 @@ def dimension_of(plan: Any) -> int | str | None:
     return plan.cases[0].experiment.grid.dimension if plan.cases and not swept else None
 
 
-def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, probes: Any = (), **more: Any) -> Array:
-    """An array with the units and the long name of the table, for scenes of one dimension; `probes` as in `records.variables.threshold`."""
-    found = describe(name, dimension, probes)
+def described(name: str, dims: tuple[str, ...], data: Any, dimension: int | str | None = None, probes: Any = (), bodies: Any = (), **more: Any) -> Array:
+    """An array with the units and the long name of the table, for scenes of one dimension; `probes` and `bodies` as in `records.variables.describe`."""
+    found = describe(name, dimension, probes, bodies)
     apart = ", per metre of depth where grid.dimension is 2, per square metre where it is 1" if dimension is None and is_total(name) else ""
     return Array(dims, data, {"units": found.units, "long_name": found.long_name + apart, **more})
 
@@ -43,7 +43,7 @@ class Table:
 
     def __init__(self, plan: Any, files: dict[str, str] | None = None, outside: bool = False):
         self.plan, self.files, self.outside = plan, files or {}, outside
-        self.dimension = dimension_of(plan)
+        self.dimension, self.bodies = dimension_of(plan), tuple(plan.cases[0].experiment.bodies) if plan.cases else ()
         self.dims = tuple(dim.name for dim in plan.dims)
         self.shape = tuple(dim.size for dim in plan.dims)
         self.count = math.prod(self.shape)
@@ -140,7 +140,7 @@ class Table:
         probes = self.plan.cases[0].experiment.output.probes if self.plan.cases else ()
         first = self.plan.cases[0].experiment if self.plan.cases else None
         meanings |= {f"misfit_{name}": misfit(first, name, curve) for name, curve in (first.output.measured.items() if first is not None else ())}
-        said = lambda name, values: described(name, self.dims, self.full(values), self.dimension, probes, **meanings.get(name, {}))  # noqa: E731
+        said = lambda name, values: described(name, self.dims, self.full(values), self.dimension, probes, self.bodies, **meanings.get(name, {}))  # noqa: E731
         group = Group({name: said(name, values) for name, values in columns.items()})
         coordinates = planned(self.plan) | fixed(self.plan, swept, set(columns) | set(self.series_names))
         if twice := sorted(set(coordinates) & set(columns)):
@@ -155,7 +155,7 @@ class Table:
             return group
         group.variables["time"] = described("time", ("time",), time, standard_name="time", axis="T")
         for name, values in columns.items():
-            group.variables[name] = described(name, (*self.dims, "time"), self.full(values), self.dimension)
+            group.variables[name] = described(name, (*self.dims, "time"), self.full(values), self.dimension, bodies=self.bodies)
         if shards:
             about = {"units": "1", "long_name": "file that holds the series of these points, beside this one"}
             group.variables["file"] = Array((self.dims[0],), np.array(shards, dtype=object), about)

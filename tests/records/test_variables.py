@@ -52,3 +52,18 @@ def test_direction_fits_dimension():
 
 def test_status_names_match_numbers():
     assert [v.STATUS[i] for i in (v.OK, v.FAILED, v.TIMEOUT, v.KILLED, v.DIVERGED, v.SKIPPED, v.PENDING)] == list(v.STATUS)
+
+
+@pytest.mark.parametrize(
+    ("name", "bodies", "said"),
+    [
+        ("heat_patty_cheese", (), "heat taken in by patty from cheese since the start"),
+        ("heat_beef_patty_cheese", (), "heat taken in by the first body of beef patty cheese from the second since the start"),
+        ("heat_beef_patty_cheese", ("beef_patty", "cheese"), "heat taken in by beef patty from cheese since the start"),
+        ("force_struck_striking_x", ("striking", "struck"), "force on struck by striking, mean since the record before, along x"),
+        ("force_hot_plate_z", ("striking", "struck"), "force on bodies by hot plate, mean since the record before, along z"),
+        ("area_beef_patty_cheese", ("beef_patty", "cheese"), "area of beef patty in touch with cheese, mean since the record before"),
+    ],
+)
+def test_who_meets_whom_is_said_by_name(name, bodies, said):
+    assert v.describe(name, 3, (), bodies).long_name == said
