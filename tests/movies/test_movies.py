@@ -129,3 +129,19 @@ def test_points_with_grids_of_their_own_side_by_side(tmp_path, monkeypatch):
     mpm.sweep(mpm.load(fake_runner.slab({"grid.cell": [0.005, 0.01]})), out=tmp_path / "s", jobs=0)
     figure = still(tmp_path / "s", ["cell=all"], of="temperature", at=[0])
     assert [len(ax.collections[0].get_offsets()) for ax in figure.axes[:2]] == [11, 6]
+
+
+def test_a_wall_that_is_near_belongs_to_the_picture():
+    from mpm.movies.stage import with_walls
+
+    box = np.array([[8.5, 0.5], [15.5, 7.5]])
+    assert with_walls(box, {"grid": {"size": [24, 12]}}, False).tolist() == [[8.5, 0.0], [15.5, 7.5]]
+    assert with_walls(np.array([[-7.0, 0.5], [7.0, 7.5]]), {"grid": {"size": [7.2, 12]}}, True).tolist() == [[-7.2, 0.0], [7.2, 7.5]]
+    assert with_walls(box, {"grid": {"size": [24, 12, 9]}}, False) is box and with_walls(box, {}, False) is box
+
+
+def test_no_colour_is_lost_on_white_paper():
+    from mpm.movies.stage import COLOURS
+
+    linear = [np.where(c <= 0.03928, c / 12.92, ((c + 0.055) / 1.055) ** 2.4) for c in COLOURS(np.linspace(0, 1, 256))[:, :3]]
+    assert 1.05 / (max(one @ [0.2126, 0.7152, 0.0722] for one in linear) + 0.05) > 1.4  # contrast to white (WCAG); of inferno's end 1.06
