@@ -144,4 +144,4 @@ def test_no_colour_is_lost_on_white_paper():
     from mpm.movies.stage import COLOURS
 
     linear = [np.where(c <= 0.03928, c / 12.92, ((c + 0.055) / 1.055) ** 2.4) for c in COLOURS(np.linspace(0, 1, 256))[:, :3]]
-    assert 1.05 / (max(one @ [0.2126, 0.7152, 0.0722] for one in linear) + 0.05) > 1.4  # contrast to white (WCAG); of inferno's end 1.06
+    assert 1.05 / (max(one @ [0.2126, 0.7152, 0.0722] for one in linear) + 0.05) > 1.4  # contrast to white (WCAG); of the end of inferno 1.05
