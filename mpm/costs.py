@@ -32,7 +32,7 @@ BYTES_PROCESS = {"point": 195_000_000, "moving": 203_000_000, "rigid": 222_000_0
 LATTICE = 30_000  # places a body that tell how much of its bounding box it fills
 LOOKED = 50_000  # particles of a scene that are all made to see its limits
 IMPLICIT = {1: 45e-6, 2: 45e-6, 3: 200e-6}  # s a particle and implicit step, heat included, by directions
-IMPLICIT_STEPS, WORTH = 40, 50.0  # steps at tolerance 1e-4; see by_mechanics
+IMPLICIT_STEPS, WORTH = 40, 100.0  # steps at tolerance 1e-4; see by_mechanics
 STEPS_RIGID = 100  # of a run at the default tolerance, whatever the cell
 
 

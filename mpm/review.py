@@ -186,10 +186,12 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
         return
     gone, most = run.series["dissipation_transfer"], turned_over(run.series)
     worst = float(gone[np.argmax(np.abs(gone))])
-    if experiment.method.mechanics == "implicit" and worst > 0:  # long steps damp what moves: that is what they are for
+    implicit = experiment.method.mechanics == "implicit"
+    if implicit and worst > 0 and run.facts.get("moved", 0.0) <= ENERGY * most:  # long steps damp what moves: that is what they are for
         return
     if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run):
-        said = "is lost to transfers, walls and time steps" if worst > 0 else "appears that no load and no heat accounts for"
+        lost = "is lost to long steps, which damp what is thrown or falls" if implicit else "is lost to transfers, walls and time steps"
+        said = lost if worst > 0 else "appears that no load and no heat accounts for"
         yield f"{abs(worst):.3g} {joules(experiment)}, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
 
 

@@ -31,7 +31,7 @@ PEERS = {
     "jit": {"cache", "fingerprint", "linking"}, "state": {"outcome"}, "lanes": {"jit"}, "tensors": {"jit", "lanes"}, "isotropic": {"jit", "lanes", "tensors"},
     "transfer": {"basis", "boundary"}, "heat": {"materials"},  # spreads weights, counts directions; laws of temperature
     "scene": {"config"},  # Config -> Scene
-    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate", "total"},
+    "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate", "total", "diagnostics"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards", "warming"}, "observe": {"fields"},
     "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"}, "opened": {"plots"},

@@ -128,6 +128,5 @@ RULES: list[tuple[Rule, Callable[[Any], Iterator[tuple]]]] = [
     (framing.frame_wall, each("walls")),
     (framing.frame_material, each("materials")),
     (steps.mechanics, once),
-    (steps.mechanics_load, each("loads")),
     (steps.mechanics_material, each("materials")),
 ]

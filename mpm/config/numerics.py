@@ -167,7 +167,7 @@ class Method(Model):
     )
     mechanics: Annotated[Literal["auto", "explicit", "implicit"], Choice()] = doc(
         "explicit",
-        description="explicit: steps that follow every wave; implicit: Newton's method at steps of seconds; auto: implicit where it saves fiftyfold",
+        description="explicit: steps that follow every wave; implicit: Newton's method at steps of seconds; auto: implicit where it saves a hundredfold",
     )
     mechanics_tolerance: Annotated[float, Quantity("", "tolerance", above=0, most=0.1)] = doc(
         1e-4, description="error of an implicit step, of the body's largest extent"

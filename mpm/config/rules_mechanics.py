@@ -25,7 +25,6 @@ def hindered(experiment: Any) -> str:
     one = named(experiment, "implicit")
     found = list(mechanics(one))
     found += [wrong for name, material in one.materials.items() for wrong in mechanics_material(one, name, material)]
-    found += [wrong for index, load in enumerate(one.loads) for wrong in mechanics_load(one, index, load)]
     if found:
         return found[0].message
     if experiment.exact is not None or any(body.velocity is not None or body.angular_velocity is not None for body in experiment.bodies.values()):
@@ -45,7 +44,7 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         yield Finding(at, "no body moves, so there is no mechanics to choose", "no `mechanics`, or an elastic section in a material", on_key=True)
         return
     if len(experiment.bodies) > 1:
-        yield Finding(at, "implicit mechanics knows one body only, yet", EXPLICIT, given="implicit")
+        yield Finding(at, "implicit mechanics knows one body only, yet", f"{EXPLICIT}, with a `time.scale` where all is slow", given="implicit")
     if known(lambda: grid.basis != "quadratic"):
         yield Finding(("grid", "basis"), "implicit mechanics is known on quadratic splines only", ["quadratic", EXPLICIT], on_key=True)
     if known(lambda: method.transfer.kind != "apic"):
@@ -56,13 +55,6 @@ def mechanics(experiment: Any) -> Iterator[Finding]:
         yield Finding(("method", "fracture"), "implicit mechanics opens no faces", ["warn", "fail", EXPLICIT], on_key=True)
     if known(lambda: experiment.exact is not None and experiment.exact.kind == "manufactured"):
         yield Finding(("exact",), "the sources of a manufactured solution are not known to implicit mechanics", EXPLICIT, on_key=True)
-
-
-def mechanics_load(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
-    """Of a load."""
-    if asked(experiment) and known(lambda: item.traction is not None and item.traction.nominal is None and experiment.method.frame != "total"):
-        said = "implicit mechanics knows tractions by present area in the total frame only"
-        yield Finding(("loads", index, "traction"), said, ["nominal", "method.frame: total", EXPLICIT], on_key=True)
 
 
 def mechanics_material(experiment: Any, name: str, item: Any) -> Iterator[Finding]:

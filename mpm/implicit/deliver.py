@@ -11,7 +11,7 @@ from mpm.implicit.trial import increment, pushed, sign, trial
 from mpm.integrate.given_source import push_at
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
-from mpm.integrate.traction import share, within
+from mpm.integrate.traction import share, turn, within
 from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED
@@ -95,7 +95,7 @@ def push_forward(F, i, A, D):
 
 @role
 def loads(source, body, nodes, push, dt):
-    """Add dead loads at the end of the step, and body forces in its middle, to the nodes' forces `push` (A, D)."""
+    """Add tractions at the end of the step, on the surface of its start, and body forces in its middle, to the nodes' forces `push` (A, D)."""
     raise TypeError(f"no implicit mechanics with {type(source).__name__}")
 
 
@@ -110,6 +110,7 @@ def loads_load(source, body, nodes, push, dt):
     for p in range(nodes.w.shape[0]):
         if not source.loaded[p]:
             continue
+        turn(source.area, source, p, body.particles.J[p], D)
         now = share(source.ramp, source.t[p] + dt, 1.0)
         for k in range(nodes.w.shape[1]):
             for c in range(D):

@@ -6,9 +6,11 @@ Error    the larger of rms |x_2 - x_1|/L and WARMER rms |Theta_2 - Theta_1|/(hig
          dt clip(0.9 sqrt(REACH tolerance/error), 0.3, 2); a step whose error is too large is made again once, shorter, never twice in a row: after a remap old
          stresses are slightly out of balance with the new weights, and the move that mends this does not shrink with dt. The first step is exempt:
          a body that is put on its wall must sag.
-Kinetic  energy of motion over what gravity, loads and tools have worked so far. Where a material without viscosity flows and it stays above SWIFT for
-         PATIENCE steps, the body falls down under more than it bears: inertia carries it, and backward Euler damps that. The run ends (no_equilibrium).
-Failure  everything as before the step, a quarter of dt; below LEAST of the first step the run ends (no_equilibrium).
+Kinetic  energy of motion over what it was at the start and what gravity, loads, tools and expansion have worked so far. Where a material without viscosity
+         flows and it stays above SWIFT for PATIENCE steps, the body falls down under more than it bears: inertia carries it, and backward Euler damps
+         that. The run ends (no_equilibrium). What damping takes from a body that was thrown or fell is warned of (mpm.review, `energy`).
+Failure  everything as before the step, a quarter of dt; below LEAST of the first step the run ends, as the step did. A step fails too where particles leave the
+         grid, or move by more than SIGHT cells and past where no wall and no tool was near: what was not looked for would not stop them.
 """
 
 import copy
@@ -18,7 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm.boundary import directions
-from mpm.implicit.contact import STIFFNESS, keep_books, may_touch
+from mpm.diagnostics import kinetic
+from mpm.implicit.contact import NEAR, STIFFNESS, keep_books, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, loads
 from mpm.implicit.extrapolate import everything, extrapolate
 from mpm.implicit.free import free_tools, move_on
@@ -26,7 +29,8 @@ from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
 from mpm.implicit.newton import MOST_MOVE, Problem, solve
 from mpm.implicit.nodes import Nodes, new_nodes
 from mpm.implicit.nozzle import carry, told_work
-from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, STEP
+from mpm.integrate.state_check import unsound
+from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, SPEED, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
 from mpm.outcome import BUDGET, COMPLETED, INVERTED, NO_EQUILIBRIUM, Outcome, outcome
@@ -38,8 +42,9 @@ SWIFT, PATIENCE = 0.05, 20
 REACH = 3.0  # the error of the first-order step may be this much of the tolerance: what is kept is closer
 LEAST = 1e-4  # of the first step that was tried
 STRIDE = 0.5  # cells that a tool may move in a step
+SIGHT = NEAR - 0.5  # cells that a particle may move in a step where walls or tools may be near
 REJECT = 2.0  # of what is aimed at: an error from which a step is made again
-CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver")  # what a shorter step may cure
+CURED = ("no_equilibrium", "inverted", "overstretched", "heat_solver", "left_grid")  # what a shorter step may cure
 
 
 @dataclass
@@ -52,9 +57,9 @@ class Implicit:
     walls: np.ndarray  # (3, 2) kinds
     lasting: Nodes | None = None  # of the reference shape, in the total frame
 
-    def begin(self) -> dict:
-        """What a run counts, and what its next step is to be: steps made again for their error (rejected) or cut (failed), sums, extrema."""
-        return {"next": self.first, "last": 0.0, "again": 0, "work": 0.0, "swift": 0} | dict.fromkeys(TOLD, 0)
+    def begin(self, energy: float) -> dict:
+        """What a run with this energy of motion counts, and its next step: steps made again for their error (rejected) or cut (failed), sums, extrema."""
+        return {"next": self.first, "last": 0.0, "again": 0, "work": energy, "moved": energy, "swift": 0} | dict.fromkeys(TOLD, 0)
 
     def finals(self, told: dict) -> dict[str, float]:
         """What the dataset says of a run's steps."""
@@ -67,7 +72,7 @@ class Implicit:
 
 def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> Outcome:
     """Steps up to `until`. warm(scene, clock, work, begun, dt, limits) is the run's heat step; look() -> bool asks whether to stop."""
-    clock.told = clock.told or scene.implicit.begin()
+    clock.told = clock.told or scene.implicit.begin(sum(kinetic(scene.space, body.particles) for body in scene.bodies))
     while until - clock.time > 1e-12 * until:
         goal = until
         if scene.inflow is not None:
@@ -97,7 +102,7 @@ def advance(scene, clock, guards, work, until: float, warm, recorder, look) -> O
         recorder.watch(scene, clock.time)
         if look():
             return outcome(BUDGET, time=clock.time * scene.scale, step=clock.steps)
-    scene.facts |= {"mechanics": "implicit", **{name: clock.told[name] for name in TOLD}}
+    scene.facts |= {"mechanics": "implicit", **{name: clock.told[name] for name in (*TOLD, "moved")}}
     return guards.whole(scene, clock)
 
 
@@ -118,7 +123,14 @@ def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
         if not (found := one_step(scene, clock, work, 0.5 * dt, warm)).ok:
             return math.inf, found
     error = extrapolate(scene, clock, work, once, start)
-    return error, outcome(COMPLETED) if math.isfinite(error) else outcome(INVERTED, time=clock.time * scene.scale, step=clock.steps)
+    return error, whole(scene, clock) if math.isfinite(error) else outcome(INVERTED, time=clock.time * scene.scale, step=clock.steps)
+
+
+def whole(scene, clock) -> Outcome:
+    """Whether the next step can begin: every particle is on the grid, and finite."""
+    if scene.references or (wrong := unsound(scene.space, scene.bodies[0])) is None:
+        return outcome(COMPLETED)
+    return outcome(wrong[0], wrong[1], clock.time * scene.scale, clock.steps, f"({wrong[2]})")
 
 
 def one_step(scene, clock, work, dt: float, warm) -> Outcome:
@@ -178,6 +190,9 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         pull, drag, most = np.zeros(nodes.v.shape), drag_rate(body.source, dt), MOST_MOVE * scene.space.h
     loads(body.source, body, nodes, pull, dt)
     nodes.push[:] += pull
+    clear, unforeseen = scene.meeting.distance(clock.time) if scene.meeting is not None and not scene.references else (math.inf, None)
+    if unforeseen is not None:
+        return outcome(unforeseen[0], time=clock.time * scene.scale, step=clock.steps)
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
     free = free_tools(scene, dt)
     problem = Problem(scene.space, body, nodes, pushed, free, dt, drag, most)
@@ -193,6 +208,8 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     if report[CODE] != 0:
         report[STEP] = 0
         return outcome(int(report[CODE]), int(report[PARTICLE]), clock.time * scene.scale, clock.steps)
+    if dt * math.sqrt(report[SPEED]) > max(clear, SIGHT * scene.space.h):
+        return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail="(past what it may touch)")
     if scene.references:
         end_step(scene.space, body, scene.references[0], nodes, answer.u, dt)
     carry(body, dt)
@@ -200,14 +217,14 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     if scene.course is not None:
         clock.worked += scene.course.work(scene)
     told["work"] += abs(float(np.sum(nodes.push * answer.u)))
-    kinetic = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)) / max(told["work"], 1e-300)
-    told["kinetic_over_work"] = kinetic
-    told["swift"] = told["swift"] + 1 if kinetic > SWIFT and report[DISSIPATED] > 0 and rate_independent(body.flow) else 0
+    moving, given = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)), told["work"] + abs(clock.swelled)
+    told["moved"], told["kinetic_over_work"] = max(told["moved"], moving), moving / given if given > 0 else 0.0
+    told["swift"] = told["swift"] + 1 if moving > SWIFT * given and report[DISSIPATED] > 0 and rate_independent(body.flow) else 0
     if told["swift"] > PATIENCE:
-        said = f"(inertia carries it: energy of motion is {100 * kinetic:.0f} % of the work of gravity and loads)"
+        said = f"(inertia carries it: energy of motion is {100 * moving / given:.0f} % of the work of gravity and loads)"
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail=said)
     told["deepest"] = max(told["deepest"], float(answer.depth.max(initial=0.0)))
-    return outcome(COMPLETED)
+    return whole(scene, clock)
 
 
 def rate_independent(flow) -> bool:

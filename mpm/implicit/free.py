@@ -41,6 +41,19 @@ def free_tools(scene, dt: float) -> Free:
     return Free(which, way, mass, force, v, dt * (v + dt * force / mass))
 
 
+@kernel(inline=True)
+def felt(pushed, s, move, way, e):
+    """Of piece s, that moves by `move` (D,) against a tool along e: (gap, stiffness of the gap, of the spring along the surface; n.e; way.e; what the
+    spring's slope is short of its stiffness, over way). way (D,) <- the spring's stretch."""
+    gap, slip = pressed(pushed, s, move, way)
+    push, hold, slides = springs(pushed, s, gap, slip)
+    across, along = 0.0, 0.0
+    for c in range(len(e)):
+        across += pushed.normal[s, c] * e[c]
+        along += way[c] * e[c]
+    return gap, push, hold, across, along, hold * along / (slip * slip) if slides and slip > 0.0 else 0.0
+
+
 @kernel
 def settle(nodes, pushed, free, u, dt):
     """d of every tool at displacements u, to free.d; pushed.given follows it. Returns what they cost [J]."""
@@ -61,17 +74,10 @@ def settle(nodes, pushed, free, u, dt):
                     continue
                 for c in range(D):
                     move[c] = base[s, c] - d * e[c]
-                gap, slip = pressed(pushed, s, move, way)
-                push, hold, slides = springs(pushed, s, gap, slip)
-                across, along = 0.0, 0.0
-                for c in range(D):
-                    across += pushed.normal[s, c] * e[c]
-                    along += way[c] * e[c]
+                gap, push, hold, across, along, less = felt(pushed, s, move, way, e)
                 force = push * gap * across + hold * along
                 rise, size = rise - force, size + abs(force)
-                curve += push * across * across + hold * (1.0 - across * across)
-                if slides and slip > 0.0:
-                    curve -= hold * along * along / (slip * slip)
+                curve += push * across * across + hold * (1.0 - across * across) - less * along
             if abs(rise) <= SETTLED * size:
                 break
             if rise > 0.0:
@@ -106,15 +112,10 @@ def couple(nodes, pushed, free, u, dt, c, k):
             if pushed.free[s] != free.number[q]:
                 continue
             place(nodes, pushed, s, u, weight, move)
-            gap, slip = pressed(pushed, s, move, way)
-            push, hold, slides = springs(pushed, s, gap, slip)
-            across, along = 0.0, 0.0
+            _, push, hold, across, _, less = felt(pushed, s, move, way, e)
+            p = pushed.owner[s]
             for a in range(D):
-                across += pushed.normal[s, a] * e[a]
-                along += way[a] * e[a]
-            p, lost = pushed.owner[s], hold * along / (slip * slip) if slides and slip > 0.0 else 0.0
-            for a in range(D):
-                pull = (push - hold) * across * pushed.normal[s, a] + hold * e[a] - lost * way[a]
+                pull = (push - hold) * across * pushed.normal[s, a] + hold * e[a] - less * way[a]
                 k[q] += pull * e[a]
                 for m in range(M):
                     c[q, nodes.node[p, m], a] -= weight[m] * sign(nodes, p, m, a) * pull

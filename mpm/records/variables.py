@@ -120,7 +120,7 @@ TABLE = [
     ("newton_iterations", "", "1", POINT, "implicit mechanics: iterations of Newton's method"),
     ("newton_shifts", "", "1", POINT, "implicit mechanics: matrices that were not positive and got a share of their diagonal"),
     ("wall_depth", "", "m", POINT, "implicit mechanics: how deep a piece of surface was in a contact wall, at most"),
-    ("kinetic_over_work", "", "1", POINT, "implicit mechanics: kinetic energy of the last step over the work of gravity and loads so far"),
+    ("kinetic_over_work", "", "1", POINT, "implicit mechanics: kinetic energy of the last step over that at the start and the work of all forces so far"),
     *((f"step_{word}", "", "s", POINT, f"{word} time step that bodies moved by") for word in ("shortest", "longest")),
     ("wall_time", "", "s", POINT, "wall time of the run"),
     ("attempts", "", "1", POINT, "times the point was started"),

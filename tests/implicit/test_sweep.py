@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -10,22 +11,15 @@ from mpm.sweep.api import execute
 from mpm.sweep.compare import compare
 from mpm.sweep.engine import Options
 
-COLUMN = {
-    "grid": {"dimension": 1, "size": [1.5], "cell": 0.125},
-    "bodies": {"column": {"shape": {"box": {"lower": [0], "upper": [1]}}, "material": "soft"}},
-    "materials": {"soft": {"density": 1e3, "elastic": {"hencky": {"lam": 0, "mu": 5e4}}}},
-    "gravity": [-9.81],
-    "method": {"mechanics": "implicit"},
-    "time": {"end": 1},
-    "output": {"every": 0.5},
-    "sweep": {"axes": {"gravity.0": [-3.0, -6.0, -9.81], "method.frame": ["updated", "total"]}},
-}
+COLUMN = Path(__file__).parents[2] / "configs" / "verification" / "hydrostatic_column.yaml"
+FREE = {"exact": None, "grid.cell": 0.125, "output.every": 0.5, "time.end": 1}
+SWEPT = FREE | {"method.mechanics": "implicit", "sweep": {"axes": {"gravity.0": [-0.06, -0.12, -0.2], "method.frame": ["updated", "total"]}}}
 
 
 @pytest.mark.slow
 def test_one_process_two_and_dask(tmp_path):
     for name, options in (("one", {"jobs": 1}), ("two", {"jobs": 2}), ("dask", {"jobs": 2, "scheduler": "local"})):
-        result = execute(load(COLUMN), tmp_path / name, Options(**options), None)
+        result = execute(load(COLUMN, SWEPT), tmp_path / name, Options(**options), None)
         assert result.counts["ok"] == 6
     assert compare(tmp_path / "one", tmp_path / "two") == [] and compare(tmp_path / "one", tmp_path / "dask") == []
 
@@ -37,8 +31,7 @@ import sys
 from mpm.config import load
 from mpm.runner import run_point
 from mpm.simulation import simulate
-made = {COLUMN | {"method": {}, "time": {"end": 0.01}, "output": {"every": 0.01}, "sweep": None}!r}
-assert run_point(load({{key: value for key, value in made.items() if value}})).outcome.ok
+assert run_point(load({str(COLUMN)!r}, {FREE | {"sweep": None}!r})).outcome.ok
 sys.exit(any(name.startswith("mpm.implicit") for name in sys.modules))
 """
     assert subprocess.run([sys.executable, "-c", code], env={"NUMBA_DISABLE_JIT": "1"}, check=False).returncode == 0

@@ -126,7 +126,6 @@ def test_forces_on_particles_turn_and_grow_with_their_surface(dimension):
     ({"loads.0.traction": {}}, "of one form.*nominal, cauchy, pressure"),
     ({"loads.0.traction": {"pressure": 1, "nominal": [1, 0]}}, "of one form, not nominal and pressure"),
     ({"loads.0.traction": {"cauchy": [1]}}, "the traction needs 2 numbers"),
-    ({"method.mechanics": "implicit", "method.frame": "updated"}, "implicit mechanics knows tractions by present area in the total frame only"),
 ])  # fmt: skip
 def test_refusals(changes, said):
     with pytest.raises(ConfigError, match=said):
