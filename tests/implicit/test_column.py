@@ -72,10 +72,10 @@ def test_a_floating_body_does_not_drift():
 
 @pytest.mark.plain
 def test_what_is_thrown_at_a_wall_stops_there():
-    """Its first step may be of 4 s, in which it would fly out of the domain: that one is cut, none passes the wall, and the motion that steps damp is told."""
-    run = run_point(column(16, gravity=[0.0], bodies={"column": {"shape": {"box": {"lower": [0.3], "upper": [1.1]}}, "material": "soft", "velocity": [-1.0]}},
-                           method={"mechanics": "implicit"}, time={"end": 400}, output={"every": 400}))  # fmt: skip
-    assert run.outcome.ok and run.facts["failed"] > 0 and run.finals["position_min_x"] > 0 and run.finals["kinetic_over_work"] < 1e-6
+    """In a step of 4 s it would fly out of the domain: that one is cut, none passes the wall, and the motion that steps damp is told."""
+    run = run_point(column(8, gravity=[0.0], bodies={"column": {"shape": {"box": {"lower": [0.3], "upper": [1.1]}}, "material": "soft", "velocity": [-1.0]}},
+                           method={"mechanics": "implicit"}, time={"end": 8, "step": 4}, output={"every": 8}))  # fmt: skip
+    assert run.outcome.ok and run.facts["failed"] > 0 and run.finals["position_min_x"] > 0 and run.finals["kinetic_over_work"] < 0.1
     assert any(text.startswith("energy:") for text in run.facts["warnings"])
 
 
