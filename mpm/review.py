@@ -186,9 +186,10 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
         return
     gone, most = run.series["dissipation_transfer"], turned_over(run.series)
     worst = float(gone[np.argmax(np.abs(gone))])
-    implicit = experiment.method.mechanics == "implicit"
-    if implicit and worst > 0 and run.facts.get("moved", 0.0) <= ENERGY * most:  # long steps damp what moves: that is what they are for
+    implicit, moved = experiment.method.mechanics == "implicit", run.facts.get("moved", 0.0)
+    if implicit and worst > 0 and moved <= ENERGY * most:  # long steps damp what moves: that is what they are for
         return
+    most = max(most, moved)
     if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run):
         lost = "is lost to long steps, which damp what is thrown or falls" if implicit else "is lost to transfers, walls and time steps"
         said = lost if worst > 0 else "appears that no load and no heat accounts for"

@@ -4,7 +4,6 @@ Three scenes at one cell each, so that what is seen is the step's error: the loa
 column against the stack of material points that it is. Explicit steps at the real time and with time scaled by 50 and 500; what would take longer than
 --most is left out, and the table says so. Times are of the process, the least of ROUNDS through all settings, so that what else a machine does meets all alike;
 what takes more than BRIEF is run once. A case that is named is measured again, the rows of the others stay.
-The loaf's explicit heat steps are of 0.12 s, a tenth of their own choice: what those expand at once rings where time is scaled by 50 or less.
 Between the two mechanics lies more than the step: explicit runs have no ghost penalty, and their sums differ by what the cell makes (0.1 to 0.3 %).
 """
 
@@ -22,10 +21,10 @@ from mpm.runner import estimate, run_point, run_points
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 DOCS = Path(__file__).parents[2] / "docs"
-CASES = {  # config, what is compared, what is changed: no output on the way, where every step would end; and in explicit runs
-    "loaf": (CONFIGS / "scenes" / "loaf_oven_spring.yaml", ("position_max_z", "position_max_r"), {"output.every": "240"}, {"method.heat_step": "0.12"}),
-    "viscous disc": (CONFIGS / "studies" / "viscous_slump.yaml", ("position_max_z", "position_max_r"), {"output.every": "10"}, {}),
-    "viscous column": (CONFIGS / "studies" / "viscous_column.yaml", ("position_mean_x",), {"output.every": "20"}, {}),
+CASES = {  # config, what is compared, what is changed: no output on the way, where every step would end
+    "loaf": (CONFIGS / "scenes" / "loaf_oven_spring.yaml", ("position_max_z", "position_max_r"), {"output.every": "240"}),
+    "viscous disc": (CONFIGS / "studies" / "viscous_slump.yaml", ("position_max_z", "position_max_r"), {"output.every": "10"}),
+    "viscous column": (CONFIGS / "studies" / "viscous_column.yaml", ("position_mean_x",), {"output.every": "20"}),
 }
 SETTINGS = {f"implicit, {tolerance:g}": {"method.mechanics_tolerance": str(tolerance)} for tolerance in (1e-3, 3e-4, 1e-4, 3e-5)}
 SETTINGS |= {f"explicit, S = {S}": {"method.mechanics": "explicit", "time.scale": str(S)} for S in (500, 50, 1)}
@@ -55,7 +54,7 @@ def stack(experiment, count: int = 64) -> float:
 
 def measured(case: str, most: float) -> list[dict]:
     """A row a setting: error [-] and process time [s], or why there is none."""
-    file, names, change, explicit = CASES[case]
+    file, names, change = CASES[case]
     if case == "viscous column":
         right = {names[0]: stack(load(file))}
     else:
@@ -65,7 +64,7 @@ def measured(case: str, most: float) -> list[dict]:
     spent = dict.fromkeys(SETTINGS, math.inf)
     for turn in range(ROUNDS):
         for setting, row in rows.items():
-            experiment = load(file, change | SETTINGS[setting] | (explicit if setting.startswith("explicit") else {}))
+            experiment = load(file, change | SETTINGS[setting])
             if (guess := estimate(experiment)["seconds"]) > most:
                 row["note"] = f"left out: about {guess:.2g} s"
             if row["note"] or (turn and guess > BRIEF):

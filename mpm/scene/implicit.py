@@ -23,8 +23,8 @@ def implicit(experiment, space, bodies, references, met, times):
     from mpm.implicit.drive import Implicit
 
     size = float(np.max(np.ptp(bodies[0].particles.x, axis=0)))
-    first = experiment.time.step
-    if first == "auto":
+    first = min(experiment.time.step, times[1]) if experiment.time.step != "auto" else None
+    if first is None:
         pace = limits(space, directions(space), bodies, np.zeros((len(bodies), REPORT))).pace
-        first = float(min(FIRST * times[-1], times[1], pace))
-    return Implicit(experiment.method.mechanics_tolerance, size, first, references[0].walls if references else met.walls[0])
+        first = min(FIRST * times[-1], times[1], pace)
+    return Implicit(experiment.method.mechanics_tolerance, size, float(first), references[0].walls if references else met.walls[0])
