@@ -89,7 +89,7 @@ def test_round_off_of_heat_that_adds_up_to_nothing_is_no_gap():
 def test_the_round_off_of_a_body_at_rest_is_no_energy(held, told):
     """A bar of 4 m3 and lam + 2 mu = 7 holds 7e-23 J at a strain of 1e4 round-offs."""
     series = {"energy_kinetic": held, "energy_elastic": 0.0, "dissipation_total": 0.0, "work_loads": 0.0, "dissipation_transfer": -held, "volume_total": 4.0}
-    run = SimpleNamespace(series={name: np.array([value]) for name, value in series.items()})
+    run = SimpleNamespace(series={name: np.array([value]) for name, value in series.items()}, facts={})
     assert bool(list(LOOKS["energy"](scene(0.0, 4.0), run))) is told
 
 
