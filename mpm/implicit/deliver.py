@@ -137,6 +137,12 @@ def loads_both(source, body, nodes, push, dt):
     loads(source.given, body, nodes, push, dt)
 
 
+@kernel
+def pull_nodes(body, nodes, push, dt):
+    """`loads`, compiled: a role that Python calls is not."""
+    loads(body.source, body, nodes, push, dt)
+
+
 @role
 def drag_rate(source, dt):
     """In a step of dt [1/s]."""

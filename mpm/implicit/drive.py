@@ -22,7 +22,7 @@ import numpy as np
 from mpm.boundary import directions
 from mpm.diagnostics import kinetic
 from mpm.implicit.contact import NEAR, STIFFNESS, keep_books, may_touch
-from mpm.implicit.deliver import deliver, drag_rate, loads
+from mpm.implicit.deliver import deliver, drag_rate, pull_nodes
 from mpm.implicit.extrapolate import everything, extrapolate
 from mpm.implicit.free import free_tools, move_on
 from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
@@ -34,6 +34,7 @@ from mpm.integrate.strain import CODE, DISSIPATED, PARTICLE, SPEED, STEP
 from mpm.integrate.timestep import limits, stiffest
 from mpm.materials import Constant, EllipseRadial
 from mpm.outcome import BUDGET, COMPLETED, INVERTED, NO_EQUILIBRIUM, Outcome, outcome
+from mpm.state import NoSource
 
 CUT, SHRINK, GROW, SAFE = 0.25, 0.3, 2.0, 0.9
 TOLD = {"rejected": "steps_rejected", "failed": "steps_failed", "iterations": "newton_iterations", "shifts": "newton_shifts", "deepest": "wall_depth",
@@ -188,7 +189,8 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     else:
         nodes = new_nodes(scene.space, scene.gradient, body, how.walls, scene.gravity[-1], mu)
         pull, drag, most = np.zeros(nodes.v.shape), drag_rate(body.source, dt), MOST_MOVE * scene.space.h
-    loads(body.source, body, nodes, pull, dt)
+    if not isinstance(body.source, NoSource):
+        pull_nodes(body, nodes, pull, dt)
     nodes.push[:] += pull
     clear, unforeseen = scene.meeting.distance(clock.time) if scene.meeting is not None and not scene.references else (math.inf, None)
     if unforeseen is not None:
