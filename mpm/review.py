@@ -184,13 +184,11 @@ def round_off(experiment: Any, run: Run) -> float:
 def energy(experiment: Any, run: Run) -> Iterator[str]:
     if "dissipation_transfer" not in run.series:
         return
-    gone, most = run.series["dissipation_transfer"], turned_over(run.series)
-    worst = float(gone[np.argmax(np.abs(gone))])
-    implicit, moved = experiment.method.mechanics == "implicit", run.facts.get("moved", 0.0)
-    if implicit and worst > 0 and moved <= ENERGY * most:  # long steps damp what moves: that is what they are for
-        return
-    most = max(most, moved)
-    if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run):
+    gone, moved = run.series["dissipation_transfer"], run.facts.get("moved", 0.0)
+    worst, most = float(gone[np.argmax(np.abs(gone))]), max(turned_over(run.series), moved)
+    implicit = experiment.method.mechanics == "implicit"
+    slow = implicit and worst > 0 and moved <= ENERGY * most  # long steps damp what moves: that is what they are for
+    if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run) and not slow:
         lost = "is lost to long steps, which damp what is thrown or falls" if implicit else "is lost to transfers, walls and time steps"
         said = lost if worst > 0 else "appears that no load and no heat accounts for"
         yield f"{abs(worst):.3g} {joules(experiment)}, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
