@@ -117,3 +117,10 @@ config.load({**scene, "time": {"end": "1 s"}})
 assert "pint" in sys.modules
 """
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_parameter_s_unit_is_one_that_configs_may_hold():
+    from mpm.config.units import si
+
+    with pytest.raises(UnitError):
+        si("5 m**99999")
