@@ -48,8 +48,13 @@ class Outcome:
         return f"{self.kind}: {self.message}" if self.message else self.kind
 
 
+DONE = Outcome(KINDS[COMPLETED][0])
+
+
 def outcome(code: int, particle: int = -1, time: float | None = None, step: int = -1, detail: str = "") -> Outcome:
     """The outcome of a code, with the particle, time [s] and step at which it was seen."""
+    if code == COMPLETED:
+        return DONE
     kind, what, advice = KINDS[code]
     place = [f"particle {particle}"] if particle >= 0 else []
     text = " at ".join([" ".join(x for x in (what, detail) if x), *place])
@@ -57,4 +62,4 @@ def outcome(code: int, particle: int = -1, time: float | None = None, step: int 
         text += f", t = {time:.6g} s"
     if step >= 0:
         text += f", step {step}"
-    return Outcome(kind, text if code else "", advice)
+    return Outcome(kind, text, advice)

@@ -23,7 +23,7 @@ from mpm.memory import arrays, fill
 from mpm.observe import Recorder, merged, stops
 from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
 from mpm.state import Run, as_heated, as_moved
-from mpm.total.drive import advance_references, present_limits, show_all
+from mpm.total.drive import advance_references, present_limits, present_steps, show_all
 from mpm.warming import warm_bodies
 
 BLOCK, BLOCK_WORK = 32, 1_000_000  # steps, and particle-steps, between looks at guards, limits and signals
@@ -130,9 +130,9 @@ class Clock:
         """After a block of steps of dt: rates from increments, and the sums of its steps."""
         self.shortest, self.longest = min(self.shortest, dt), max(self.longest, dt)
         self.reports[:, RATE] /= dt
-        sums = self.reports.sum(axis=0).tolist()
+        reports = self.reports.tolist()
         for name, place in GATHERED.items():
-            setattr(self, name, getattr(self, name) + sums[place])
+            setattr(self, name, getattr(self, name) + sum(report[place] for report in reports))
 
 
 def simulate(scene: Scene, beat=None, keeper=None) -> Run:
@@ -249,23 +249,24 @@ def march(scene: Scene, clock: Clock, guards: Guards, work, until: float, look) 
             goal = scene.inflow.before(clock.time, until)
         if not (sound := guards.block(scene, clock)).ok:
             return sound
-        now = present_limits(scene, clock)
-        step = scene.step or now.step() * scene.safety
+        now = present_steps(scene, clock)
+        least = min(now, key=now.get)
+        step = scene.step or now[least] * scene.safety
         clock.first_step = clock.first_step or step
         if step < clock.first_step / UNDERFLOW:
-            return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({min(now.mechanical, key=now.mechanical.get)})")
+            return outcome(STEP_UNDERFLOW, time=clock.time * scene.scale, step=clock.steps, detail=f"({least})")
         left = goal - clock.time
         count = max(1, math.ceil(left / step * (1 - 1e-9)))
         dt, block = left / count, clear(scene, clock, left / count, min(scene.order.block(BLOCK, BLOCK_WORK), count))
         cut = count == 1 and left < step * (1 - 1e-9)
-        binding = "heat pace or output" if cut else "time.step" if scene.step else min(now.mechanical, key=now.mechanical.get)
+        binding = "heat pace or output" if cut else "time.step" if scene.step else least
         clock.bound[binding] = clock.bound.get(binding, 0) + block
-        clock.stepped = dt, now.step(), min(now.mechanical, key=now.mechanical.get)
-        clock.swell = max(float(report[SWELL]) for report in clock.reports)
+        clock.stepped = dt, now[least], least
+        clock.swell = max(clock.reports[:, SWELL].tolist())
         if (taken := (advance_references if scene.references else advance_block)(scene, clock, work, dt, block)) is not None and not taken.ok:
             return taken
         clock.gather(dt)
-        if (failed := next((b for b in range(len(scene.bodies)) if clock.reports[b, CODE] != 0), None)) is not None:
+        if (failed := next((b for b, code in enumerate(clock.reports[:, CODE].tolist()) if code != 0), None)) is not None:
             report = clock.reports[failed]
             if report[CODE] == UNSOUND and not (found := guards.whole(scene, clock)).ok:  # before any step
                 return found

@@ -63,7 +63,7 @@ def noise(D, seed=2):
 def scattered(space, gradient, x, chunk):
     D = directions(space)
     nodes, box = np.zeros((math.prod(extents(space)), columns(D))), np.array([[10**9, -1]] * D)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     scatter(space, gradient, x, 0, chunk, N, nodes, box)
     return nodes
 
@@ -82,7 +82,7 @@ def test_transfers_reproduce_linear_fields_and_keep_momentum(name, make):
     u = np.zeros((math.prod(extents(space)), columns(D)))
     u[:, :D] = constant + nodes_at(space) @ slope.T
     chunk = noise(D)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, gradient, x, 0, chunk, N, u)
     assert np.allclose(chunk.v[:, :N].T, constant + x @ slope.T, atol=1e-13)
     for gathered in (chunk.C, chunk.L):
@@ -107,7 +107,7 @@ def test_gather_is_the_transpose_of_scatter(name, make):
     chunk.G[..., :N] = np.random.default_rng(4).standard_normal((D, D, N))
     nodes = scattered(space, Bspline(), x, chunk)
     u = np.random.default_rng(5).standard_normal(nodes.shape)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, Bspline(), x, 0, chunk, N, u)
     moment = H * H * np.broadcast_to(second_moment(space.basis, x / H), x.shape).T
     expected = np.sum(chunk.a * chunk.v) + np.sum(moment * chunk.A[..., :N] * chunk.C[..., :N]) + np.sum(chunk.G * chunk.L)

@@ -178,6 +178,7 @@ ELSEWHERE = {
     "scatter_by_basis(Linear)", "scatter_by_basis(Cubic)", "gather_by_basis(Linear)", "gather_by_basis(Cubic)",  # tests/test_bases.py
     *(f"{role}({space})" for role in ("take", "give") for space in ("Line", "Plane", "Axisymmetric", "Volume")),  # tests/total/test_frame.py
     *(f"{role}_{space}({basis})" for role in ("take", "give") for space in ("plane", "volume") for basis in ("Quadratic", "Cubic")),  # the same
+    *(f"{way}_by_basis({basis})" for way in ("aim", "scatter_scalar", "gather_scalar") for basis in ("Linear", "Cubic")),  # the same
     "warms(NoHeating)", "carry_surface(NoExchange)", "latches(NoExpansion)", "latches(Expansion)",  # every isothermal body in two or three directions
     "latches(Latched)", "latches(Softening)",  # tests/integrate/test_latched.py, tests/point/test_laws.py
     *(f"{way}_by_law({law})" for way in ("explicit", "stabilised", "implicit") for law in ("Table", "Logistic")),  # tests/integrate/test_implicit_heat.py

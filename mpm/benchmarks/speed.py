@@ -171,6 +171,13 @@ def whole_step() -> str:
     return "3-D thermo-viscoplastic step (Hencky, radial return, heat), a particle: " + "; ".join(said)
 
 
+def small_scene() -> str:
+    """A whole run of a few particles and many steps."""
+    found = model("slump")
+    size = f"{found['particles']} particles and {found['steps']} steps"
+    return f"slump, a whole run of {size}: {found['step_ns']:.0f} ns a particle-step ({found['seconds']:.2f} s)"
+
+
 def empty_boxes() -> str:
     """What the empty box around two bodies costs."""
     found = model("apart")
@@ -206,7 +213,7 @@ def fitted(peers: Path | None, python: str | None) -> str:
 
 FIGURES = {
     "random order": shuffled, "threads": threads, "independent runs": two_runs, "start": start_up, "growth": grown, "whole step": whole_step,
-    "empty box": empty_boxes, "landing": landing, "lying": lying,
+    "empty box": empty_boxes, "landing": landing, "lying": lying, "slump": small_scene,
     "smaller models": smaller_models,
 }  # fmt: skip
 

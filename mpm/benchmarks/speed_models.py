@@ -6,6 +6,7 @@ loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 78
 apart         ns a particle-step of two cubes in opposite corners of a grid of 128^3, and side by side
 landing N     ms of 16 steps and of a heat step of a warm cube of 512 000 particles that lies on the floor, by N threads, and its bits
 lying [f32]   ns a particle-step of a cube of 97 000 particles that lies on the floor: by contact, and by a mirror of the wall, which asks for no contact
+slump         ns a particle-step of a point of configs/scenes/slump.yaml after the first: all of a run, its records and frames included
 points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
 Run them pinned to one core of an idle machine.
 """
@@ -15,12 +16,14 @@ import json
 import statistics
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 
 from mpm.config import load
 from mpm.runner import run_point, run_points
 
+SCENES = Path(__file__).parents[2] / "configs" / "scenes"
 ROUNDS = 5
 SHEAR = 2.0  # 1/s
 ERRORS = (3e-4, 5e-5)
@@ -118,15 +121,21 @@ def disc() -> dict:
 
 def loaf() -> dict:
     """Median over points that differ in kappa, one after another in a process, as a worker of a sweep has them."""
-    from pathlib import Path
-
-    data = load(Path(__file__).parents[2] / "configs" / "scenes" / "loaf.yaml").resolved() | {"sweep": None}
+    data = load(SCENES / "loaf.yaml").resolved() | {"sweep": None}
     seconds = []
     for kappa in (*BAKING["kappa"][:1], *BAKING["kappa"]):
         data["materials"]["dough"]["heat"]["fourier"]["kappa"] = kappa
         experiment = load(data)
         seconds.append(timed(lambda experiment=experiment: run_point(experiment)))
     return {"seconds": statistics.median(seconds[1:]), "first": seconds[0]}
+
+
+def slump() -> dict:
+    """Median over runs of a small moving scene, as a worker of a sweep has them."""
+    experiment = load(load(SCENES / "slump.yaml").resolved() | {"sweep": None})
+    runs = [run_point(experiment) for _ in range(1 + ROUNDS)]
+    particles, steps, seconds = runs[0].facts["particles"], runs[0].steps, statistics.median(run.wall_time for run in runs[1:])
+    return {"step_ns": 1e9 * seconds / particles / steps, "particles": particles, "steps": steps, "seconds": seconds}
 
 
 def apart() -> dict:
@@ -204,4 +213,5 @@ def points() -> dict:
 
 if __name__ == "__main__":
     what, *more = sys.argv[1:]
-    print(json.dumps({"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "landing": landing, "lying": lying, "points": points}[what](*more)))
+    models = {"whole": whole, "disc": disc, "loaf": loaf, "apart": apart, "landing": landing, "lying": lying, "points": points, "slump": slump}
+    print(json.dumps(models[what](*more)))

@@ -14,7 +14,7 @@ from mpm.integrate.heat_step import ROWS as EXPLICIT_ROWS
 from mpm.integrate.step_parts import Buffers, method_of
 from mpm.integrate.step_threaded import advance_slabs
 from mpm.integrate.strain import PARTICLE, SPEED
-from mpm.integrate.timestep import WAVE, limits
+from mpm.integrate.timestep import WAVE, mechanical_limits
 from mpm.lanes import aligned
 from mpm.outcome import COMPLETED, Outcome, outcome
 from mpm.state import Thermal
@@ -44,13 +44,13 @@ def work_arrays(scene) -> Work:
 
 def reach(scene, clock, span: float) -> float:
     """How far a particle or a tool may move within `span` [m]."""
-    speed, g = math.sqrt(max(clock.reports[:, SPEED])), heaviest(scene)
+    speed, g = math.sqrt(max(clock.reports[:, SPEED].tolist())), heaviest(scene)
     return AHEAD * max(speed + g * span, scene.meeting.pace(clock.time, span)) * span
 
 
 def heaviest(scene) -> float:
     """No gravity of the run is larger [m/s2]."""
-    return scene.course.heaviest if scene.course is not None and scene.course.gravity else float(np.linalg.norm(scene.gravity[0]))
+    return scene.course.heaviest if scene.course is not None and scene.course.gravity else math.hypot(*scene.gravity[0].tolist())
 
 
 def clear(scene, clock, dt: float, steps: int) -> int:
@@ -78,7 +78,7 @@ def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
     astray = push(scene, clock, work, float(dt), float(kick), steps, float(dt), clock.reports)
     if scene.course is not None:
         clock.worked += scene.course.work(scene)
-    travel = math.sqrt(max(clock.reports[:, SPEED])) * dt * steps
+    travel = math.sqrt(max(clock.reports[:, SPEED].tolist())) * dt * steps
     scene.order.passed(travel, steps, astray)
     if met is not None:
         met.left -= max(travel, met.pace(clock.time, dt * steps) * dt * steps)
@@ -87,7 +87,7 @@ def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
 
 def push(scene, clock, work: Work, dt: float, kick: float, steps: int, ahead: float, reports) -> bool:
     """`steps` steps of dt, whose first impulse acts for `kick` and whose contacts are such that nothing overlaps `ahead` later. Whether a chunk was late."""
-    wave = limits(scene.space, directions(scene.space), scene.bodies, clock.reports).mechanical["elastic wave"] if clock.touching else 0.0
+    wave = mechanical_limits(scene.space, directions(scene.space), scene.bodies, clock.reports)["elastic wave"] if clock.touching else 0.0
     reports[:] = 0.0
     reports[:, PARTICLE] = -1
     if clock.touching:

@@ -15,9 +15,15 @@ from contextlib import contextmanager
 
 from mpm.contact.block import push
 from mpm.integrate.strain import CODE
-from mpm.memory import arrays, fill
+from mpm.memory import arrays
 
 STILL = 1e-9  # of a step: how far the steps go that move nothing
+
+
+def put_back(now, kept) -> None:
+    """Arrays as they were."""
+    for path, array in now.items():
+        array[...] = kept[path]
 
 
 @contextmanager
@@ -32,7 +38,8 @@ def in_sync(scene, clock, work):
     if scene.course is not None:
         scene.course.lay(scene, clock.time, STILL * clock.lag, 1, 1.0)
     changed = scene.bodies, () if scene.meeting is None else scene.meeting.touching
-    kept = {path: array.copy() for path, array in arrays(changed).items()}
+    now = arrays(changed)
+    kept = {path: array.copy() for path, array in now.items()}
     reach, dt, reports = scene.order.reach.copy(), 2 * clock.lag, clock.reports.copy()
     for kick in (0.0, clock.lag):
         reports[:] = 0.0
@@ -41,9 +48,9 @@ def in_sync(scene, clock, work):
             raise ArithmeticError("a state that was found sound takes no step")  # no state does that: the guards look at it first
         if kick == 0.0:
             idle = [(body.particles.v.copy(), body.particles.C.copy()) for body in scene.bodies]
-            fill(changed, kept)
+            put_back(now, kept)
     pushed = [(body.particles.v - v, body.particles.C - C) for body, (v, C) in zip(scene.bodies, idle, strict=True)]
-    fill(changed, kept)
+    put_back(now, kept)
     del kept, idle
     for body, (v, C) in zip(scene.bodies, pushed, strict=True):
         body.particles.v[...] += v

@@ -126,7 +126,7 @@ def step_chunk(method, body, chunk, source, moment, first, count, shake, report)
     if opening and not sound(space, body, first, count):
         report[CODE], report[PARTICLE] = UNSOUND, first
         return False
-    lay_down(x, first, count, chunk.place)
+    lay_down(space, x, first, count, chunk)
     state_ahead(body.particles, first, count)
     if opening:
         fetch(body.particles, first, chunk, count)
@@ -148,7 +148,7 @@ def step_chunk(method, body, chunk, source, moment, first, count, shake, report)
 def update(method, buffers, now, walls, gravity, dt):
     """Nodes of buffer `now`: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold.
 
-    Where the change is wanted, force becomes v_i+ - v_i.
+    Where the change is wanted, force becomes v_i+ - v_i: nothing in the components that a wall holds (a STOP is for other schemes alone).
     """
     scheme, shape, D = method.scheme, extents(method.space), directions(method.space)
     nodes, force, box, blocks = buffers.nodes[now], buffers.force[now], buffers.boxes[now], buffers.blocks[now]
@@ -157,46 +157,29 @@ def update(method, buffers, now, walls, gravity, dt):
         fold(force, D, shape, folded, walls, blocks)
     fold(nodes, D, shape, box, walls, blocks)
     words, (begin, end), total = blocks.view(np.uint64), span(shape, box), nodes.shape[0]
-    if D > 1 and not wants_change(scheme):
-        to_velocity(nodes, D, blocks, words, begin, end, gravity, dt)
+    if D > 1:
+        to_velocity(scheme, nodes, force, D, blocks, words, begin, end, gravity, dt)
     else:
         at = begin
         while at < end:
             first, at = run(blocks, words, at, end)
             for n in range(BLOCK * first, min(BLOCK * at, total)):
-                m = nodes[n, D]
-                inverse = 1.0 / m if m > 0.0 else 0.0
-                for c in range(D):
-                    push = dt * gravity[c] if m > 0.0 else 0.0
-                    if wants_change(scheme):
-                        nodes[n, c] *= inverse
-                        force[n, c] = force[n, c] * inverse + push
-                    else:
-                        nodes[n, c] = nodes[n, c] * inverse + push
+                m = nodes[n, 1]
+                inverse, push = (1.0 / m, dt * gravity[0]) if m > 0.0 else (0.0, 0.0)
+                if wants_change(scheme):
+                    push += force[n, 0] * inverse
+                    force[n, 0] = push
+                nodes[n, 0] = nodes[n, 0] * inverse + push
     impose(nodes, D, shape, box, walls)
     if wants_change(scheme):
-        at = begin
-        while at < end:
-            first, at = run(blocks, words, at, end)
-            for n in range(BLOCK * first, min(BLOCK * at, total)):
-                for c in range(D):
-                    before = nodes[n, c]
-                    nodes[n, c] += force[n, c]
-                    force[n, c] = before
-        impose(nodes, D, shape, box, walls)
-        at = begin
-        while at < end:
-            first, at = run(blocks, words, at, end)
-            for n in range(BLOCK * first, min(BLOCK * at, total)):
-                for c in range(D):
-                    force[n, c] = nodes[n, c] - force[n, c]
+        impose(force, D, shape, box, walls)
         unfold(force, D, shape, box, walls, blocks)
     unfold(nodes, D, shape, box, walls, blocks)
 
 
 @kernel(inline=True)
-def to_velocity(nodes, D, blocks, words, begin, end, gravity, dt):
-    """[p m] becomes [p/m + dt g, m], a node at once; a node without mass stays nothing."""
+def to_velocity(scheme, nodes, force, D, blocks, words, begin, end, gravity, dt):
+    """[p m] becomes [p/m + dt (f/m + g), m], a node at once, and f, where it is apart, dt (f/m + g); a node without mass is nothing."""
     real = nodes.dtype.type
     nought, one = real(0), real(1)
     if D == 2:
@@ -211,7 +194,13 @@ def to_velocity(nodes, D, blocks, words, begin, end, gravity, dt):
         for n in range(BLOCK * first, min(BLOCK * at, nodes.shape[0])):
             m = peek(nodes, 4 * n + D)
             if m > nought:
-                store(nodes, 4 * n, fma(load4(nodes, 4 * n), fma(splat4(one / m), moves, keeps), push))
+                inverse, change = splat4(one / m), push
+                if wants_change(scheme):
+                    change = fma(load4(force, 4 * n), inverse, push)
+                    store(force, 4 * n, change)
+                store(nodes, 4 * n, fma(load4(nodes, 4 * n), fma(inverse, moves, keeps), change))
+            elif wants_change(scheme):
+                store(force, 4 * n, splat4(nought))
 
 
 @kernel(inline=True)

@@ -109,7 +109,7 @@ def average_average(locking, space, gradient, body, chunk, nodes, box, walls, dt
     at, grow, zero = np.zeros(CHUNK), np.zeros(CHUNK), np.zeros((D, CHUNK))
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        lay_down(x, first, count, chunk.place)
+        lay_down(space, x, first, count, chunk)
         gather(space, gradient, x, first, chunk, count, nodes)
         for p in range(count):
             at[p] = V0[first + p] * J[first + p]

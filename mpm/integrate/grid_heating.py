@@ -80,7 +80,7 @@ def compress_grid_heating(heating, space, gradient, body, chunk, nodes, box, wal
     at, load, zero = np.zeros(CHUNK), np.zeros(CHUNK), np.zeros((D, CHUNK))
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        lay_down(x, first, count, chunk.place)
+        lay_down(space, x, first, count, chunk)
         gather(space, gradient, x, first, chunk, count, nodes)
         for p in range(count):
             i = first + p

@@ -129,15 +129,17 @@ def heat_all(body, chunk, first, p, count, report):
             density = put(density, k, float(peek(particles.m, first + q) / peek(particles.V0, first + q)))
             stretched, lost = put(stretched, k, float(peek(e, GROW * n + q))), put(lost, k, float(peek(e, LOST * n + q)))
         gained, risen = heat_eight(body.heating, body.thermal, theta, density, stretched, lost)
+    heated, dissipated, swelled = report[HEATED], report[DISSIPATED], report[SWELLED]  # not through memory, particle by particle
     for k in range(min(EIGHT, count - p)):
         i, V0 = first + p + k, peek(particles.V0, first + p + k)
         if warms(body.heating):
             grow_warmer(body.thermal, i, item(risen, k))
-            report[HEATED] += V0 * item(gained, k)
-        report[DISSIPATED] += V0 * float(peek(e, LOST * n + p + k))
+            heated += V0 * item(gained, k)
+        dissipated += V0 * float(peek(e, LOST * n + p + k))
         if swells(body.expansion):
-            report[SWELLED] += V0 * float(peek(e, PRESSURE * n + p + k)) * float(peek(e, GROW * n + p + k))
+            swelled += V0 * float(peek(e, PRESSURE * n + p + k)) * float(peek(e, GROW * n + p + k))
         latch(body.expansion, body.thermal, i)
+    report[HEATED], report[DISSIPATED], report[SWELLED] = heated, dissipated, swelled
 
 
 @kernel(inline=True)

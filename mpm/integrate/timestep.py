@@ -51,30 +51,38 @@ class Limits:
         return 1.0 / rate if rate > 0 else float("inf")
 
 
-def limits(space, D, bodies, reports) -> Limits:
-    """Limits of the present state; `reports` hold speed, rate, strain and swelling of the last steps."""
-    h = space.h
-    mechanical, heat, pace = {}, {}, float("inf")
+def keep(table: dict[str, float], name: str, seconds: float) -> None:
+    """The least of what has a name; infinity is no limit."""
+    if math.isfinite(seconds):
+        table[name] = min(table.get(name, math.inf), seconds)
 
-    def keep(table, name, seconds):
-        if math.isfinite(seconds):
-            table[name] = min(table.get(name, float("inf")), float(seconds))
 
-    for body, report in zip(bodies, reports, strict=True):
+def mechanical_limits(space, D, bodies, reports) -> dict[str, float]:
+    """Limits of the mechanical step in the present state, by name [s]; every block of steps asks, so numbers are Python's."""
+    h, found = space.h, {}
+    for body, report in zip(bodies, reports.tolist(), strict=True):
         R0 = float(body.particles.m[0] / body.particles.V0[0])
         lam, mu = stiffest(body)
         soften = (1.0 + coupling(body, lam, mu, R0)) * (1.0 + abs(min(report[STRAIN], 0.0)))
-        keep(mechanical, "elastic wave", WAVE * h * math.sqrt(R0 / (D * lam + 2 * mu) / soften))
+        keep(found, "elastic wave", float(WAVE * h * math.sqrt(R0 / (D * lam + 2 * mu) / soften)))
         if report[SPEED] > 0:
-            keep(mechanical, "advection", 0.5 * h / math.sqrt(report[SPEED]))
+            keep(found, "advection", 0.5 * h / math.sqrt(report[SPEED]))
         if report[RATE] > 0:
-            keep(mechanical, "velocity gradient", 0.25 / report[RATE])
+            keep(found, "velocity gradient", 0.25 / report[RATE])
         rate = sum(load.rate for load in acting(body.source) if isinstance(load, Load))
         if rate > 0:
-            keep(mechanical, "drag", DRAG / rate)
+            keep(found, "drag", DRAG / rate)
+    return found
+
+
+def limits(space, D, bodies, reports) -> Limits:
+    """Limits of the present state; `reports` hold speed, rate, strain and swelling of the last steps."""
+    h, heat, pace = space.h, {}, math.inf
+    for body, report in zip(bodies, reports, strict=True):
         if isinstance(body.thermal, Thermal):
+            R0 = float(body.particles.m[0] / body.particles.V0[0])
             kappa, alpha = conductance(body.thermal)
-            J = max(report[SWELL], float(body.particles.J.max()))
+            J = max(float(report[SWELL]), float(body.particles.J.max()))
             if kappa > 0:
                 keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
                 pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
@@ -83,7 +91,7 @@ def limits(space, D, bodies, reports) -> Limits:
             beta = strongest(body.surface, body.thermal)
             if beta > 0:
                 keep(heat, "surface exchange", R0 * alpha * h / (EXCHANGE * beta * max(J, 1.0)))
-    return Limits(mechanical, heat, pace)
+    return Limits(mechanical_limits(space, D, bodies, reports), heat, pace)
 
 
 def stiffest(body) -> tuple[float, float]:

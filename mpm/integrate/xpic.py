@@ -85,7 +85,7 @@ def pass_body(space, gradient, x, m, chunk, field, spare, box):
     """There and back, one body."""
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        lay_down(x, first, count, chunk.place)
+        lay_down(space, x, first, count, chunk)
         gather(space, gradient, x, first, chunk, count, field)
         for p in range(count):
             chunk.m[p] = m[first + p]

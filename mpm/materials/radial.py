@@ -99,15 +99,19 @@ def overstress_lanes(a1, a2, k1, k2, x, start, active):
     g = maximum(maximum((a1 - 1.0) / (k1 + a1 * x), (a2 - 1.0) / (k2 + a2 * x)), start / (1.0 + s) / (maximum(k1, k2) + s * x))
     g = maximum(g, nought)
     for _ in range(1, MOST_STEPS):
-        v1, v2 = 1.0 / (1.0 + k1 * g), 1.0 / (1.0 + k2 * g)
+        u1, u2 = 1.0 + k1 * g, 1.0 + k2 * g
+        both = 1.0 / (u1 * u2)  # divisions are what this takes: one for two
+        v1, v2 = u2 * both, u1 * both
         b1, b2 = a1 * v1, a2 * v2
         s = sqrt(b1 * b1 + b2 * b2)
         near = start - (b1 * b1 * k1 * g * (2.0 + k1 * g) + b2 * b2 * k2 * g * (2.0 + k2 * g))
         first = b2 * b2 + (((a1 - 1.0) - k1 * g) * v1) * (b1 + 1.0)
         second = b1 * b1 + (((a2 - 1.0) - k2 * g) * v2) * (b2 + 1.0)
         r = choose(below(start, one), near, choose(below(b1, b2), second, first))
-        slope = (k1 * b1 * b1 * v1 + k2 * b2 * b2 * v2) / (s * s * s) + x
-        step = (r / (s * (1.0 + s)) - g * x) / slope
+        down = 1.0 / (s * (1.0 + s))
+        less = down * (1.0 + s)  # 1/s
+        slope = (k1 * b1 * b1 * v1 + k2 * b2 * b2 * v2) * (less * less * less) + x
+        step = (r * down - g * x) / slope
         g = choose(active, g + step, g)
         active = active * below(enough * g, step)
         if most(active) < 0.5:

@@ -35,7 +35,7 @@ def gathers(scheme, space, gradient, body, chunk, nodes, force, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
-            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
+            lay_down(space, x, first, min(CHUNK, x.shape[0] - first), chunk)
             collect(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force)
 
 
@@ -45,7 +45,7 @@ def moves(space, body, chunk, dt, report, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
-            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
+            lay_down(space, x, first, min(CHUNK, x.shape[0] - first), chunk)
             move(space, x, chunk, first, min(CHUNK, x.shape[0] - first), dt, 0.0, report)
 
 
@@ -64,7 +64,7 @@ def spreads(scheme, space, gradient, body, chunk, nodes, force, box, times):
     x = body.particles.x
     for _ in range(times):
         for first in range(0, x.shape[0], CHUNK):
-            lay_down(x, first, min(CHUNK, x.shape[0] - first), chunk.place)
+            lay_down(space, x, first, min(CHUNK, x.shape[0] - first), chunk)
             spread(scheme, space, gradient, x, first, chunk, min(CHUNK, x.shape[0] - first), nodes, force, box)
 
 

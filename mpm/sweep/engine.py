@@ -30,9 +30,7 @@ from mpm.sweep.resources import ADVICE, Resources
 from mpm.sweep.store import Store
 from mpm.sweep.summaries import Summaries
 
-POLL = 0.2  # s
-LEAVE = 1.0  # s that points have to leave a checkpoint when the sweep is stopped
-GRACE = 2.0  # s that a point over its time has to stop by itself
+POLL, LEAVE, GRACE = 0.2, 1.0, 2.0  # s: between two looks; for points to leave a checkpoint when the sweep is stopped; for one over its time to stop
 KILLED_AGAIN = 3  # retries of a point whose worker died, unless told
 RUNNER = "mpm.runner"  # the module that computes: run_point, warm, estimate
 
@@ -77,8 +75,7 @@ class Engine:
     """One pass over the points that are due."""
 
     def __init__(self, store: Store, points: Points, lines: Summaries, options: Options, reporter: Reporter, gather: Gather | None = None):
-        self.store, self.points, self.lines, self.options, self.reporter = store, points, lines, options, reporter
-        self.gather = gather  # collects what is there, now and then
+        self.store, self.points, self.lines, self.options, self.reporter, self.gather = store, points, lines, options, reporter, gather
         self.due = Due(points.ids, missing(points, lines, options.rerun))
         if options.rerun == "all":
             store.forget(self.due)
@@ -87,9 +84,9 @@ class Engine:
         self.attempts: Counter = Counter()
         self.batch_size, self.names, self.configs = BatchSize(), store.batch_names(), Configs(points)
         self.failures = self.ran = self.signals = 0
-        self.compiling = 0.0  # s that workers spent on compiling
+        self.told: list[dict] = []  # summaries of points that are done, to be counted once the next are handed out
         self.stopped = self.broken = ""
-        self.asked = math.nan  # when all that runs was asked to leave
+        self.compiling, self.asked = 0.0, math.nan  # s that workers spent on compiling; when all that runs was asked to leave
         self.began = time.monotonic()
         self.executor: Executor  # from `run` on
         self.resources = Resources(store.out, options.memory, far=options.scheduler not in (None, "local"))
@@ -104,6 +101,7 @@ class Engine:
         self.executor = executor
         with compiling.say(self.heed_compiling):  # of `Serial`, which runs points in this process
             self.until_done(executor)
+        self.settle()
         for gone in list(self.running.values()):  # stopped, but records may have reached the disk before their news reached us
             self.news(gone.task)
         self.running.clear()
@@ -115,6 +113,7 @@ class Engine:
                 executor.wanted = len(self.running) + (0 if self.stopped else len(self.due))
                 while executor.free and self.due and not self.stopped and self.hand_out(executor):
                     pass
+                self.settle()
                 if self.stopped and self.left(executor):
                     break
                 if not (executor.free or self.stopped):
@@ -217,11 +216,17 @@ class Engine:
         """A task is over: its records count, and what it left is due again, point by point."""
         if event.lines:
             self.batch_size.heard(time.monotonic() - gone.start, len(event.lines))
-        for line in event.lines:
-            self.finish(line)
+        self.told += event.lines
+        if len(gone.task.jobs) == 1 or event.left or self.options.max_failures is not None:  # what is handed out next may depend on them
+            self.settle()
         if event.left:
             missed = self.news(gone.task)
             self.again(run_id for run_id in event.left if run_id in missed)
+
+    def settle(self) -> None:
+        """Count what is done."""
+        while self.told:
+            self.finish(self.told.pop(0))
 
     def again(self, run_ids: Iterable[str]) -> None:
         """Points that ran in vain, through no fault that is known to be theirs: next, alone, and not as another attempt."""
@@ -233,8 +238,7 @@ class Engine:
     def news(self, task: Task) -> list[str]:
         """Count what the disk has of a task that we have not heard of; the points of which it has nothing."""
         run_ids = [job.run_id for job in task.jobs]
-        found = self.store.news(run_ids, task.batch)
-        fresh = {line["run_id"]: line for line in found if line != self.lines.get(line["run_id"])}
+        fresh = {line["run_id"]: line for line in self.store.news(run_ids, task.batch) if line != self.lines.get(line["run_id"])}
         for line in fresh.values():
             self.finish(line)
         return [run_id for run_id in run_ids if run_id not in fresh]

@@ -9,6 +9,8 @@
 An executor knows nothing of retries, order or progress: that is the engine's.
 """
 
+import functools
+import json
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -19,11 +21,16 @@ class BrokenWorkers(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """A point to run: its config as plain JSON."""
+    """A point to run: its config as JSON text, which is made ahead while workers are busy."""
 
     run_id: str
-    config: dict
+    text: str
     attempt: int = 1
+
+    @functools.cached_property
+    def config(self) -> dict:
+        """Its config."""
+        return json.loads(self.text)
 
 
 @dataclass(frozen=True)
@@ -43,16 +50,16 @@ class Task:
     @property
     def sent(self) -> "Task":
         """What is kept of it once a worker has it: the same without configs, which take more than all else that a sweep holds of its points."""
-        return replace(self, jobs=tuple(replace(job, config={}) for job in self.jobs))
+        return replace(self, jobs=tuple(replace(job, text="") for job in self.jobs))
 
     def message(self) -> dict:
         """As plain JSON."""
-        return {"jobs": [vars(job) for job in self.jobs], "out": self.out, "batch": self.batch, "checkpoint": self.checkpoint}
+        return {"jobs": [(job.run_id, job.text, job.attempt) for job in self.jobs], "out": self.out, "batch": self.batch, "checkpoint": self.checkpoint}
 
     @classmethod
     def of(cls, message: dict) -> "Task":
         """From `message()`."""
-        return cls(tuple(Job(**job) for job in message["jobs"]), message["out"], message["batch"], message["checkpoint"])
+        return cls(tuple(Job(*job) for job in message["jobs"]), message["out"], message["batch"], message["checkpoint"])
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """The points of a plan, which of them are missing, and how they are counted."""
 
+import json
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -58,19 +59,19 @@ class ById(Mapping):
 
 
 class Configs:
-    """Configs of points as workers get them, made ahead while those are busy."""
+    """Configs of points as workers get them, JSON text, made ahead while those are busy."""
 
     def __init__(self, points: Points):
         self.points = points
-        self.ready: dict[str, dict] = {}
+        self.ready: dict[str, str] = {}
 
     def make(self, run_ids: Iterable[str]) -> None:
         """Make those of the points that come next."""
         self.ready |= {run_id: self.take(run_id) for run_id in run_ids if run_id not in self.ready}
 
-    def take(self, run_id: str) -> dict:
+    def take(self, run_id: str) -> str:
         """That of a point."""
-        return self.ready.pop(run_id, None) or self.points.cases[run_id].experiment.resolved()
+        return self.ready.pop(run_id, "") or json.dumps(self.points.cases[run_id].experiment.resolved())
 
 
 class Due:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from mpm.boundary import directions
 from mpm.diagnostics import nodal
-from mpm.integrate.timestep import WAVE, Limits, limits
+from mpm.integrate.timestep import WAVE, Limits, limits, mechanical_limits
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
 from mpm.state import Average, Thermal
 from mpm.total.heat import begin_heat, warm
@@ -58,10 +58,15 @@ def advance_references(scene, clock, work, dt: float, steps: int) -> None:
         clock.worked += scene.course.work(scene)
 
 
-def present_limits(scene, clock) -> Limits:
-    """Limits of the present state. In the total frame the elastic wave alone limits the mechanical step, and both steps may be longer."""
-    found = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+def present_steps(scene, clock) -> dict[str, float]:
+    """Limits of the mechanical step in the present state, by name [s]. In the total frame the elastic wave alone limits it, and it may be longer."""
+    found = mechanical_limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
     if not scene.references:
         return found
-    longer = min(reference.courant for reference in scene.references) / WAVE
-    return replace(found, mechanical={"elastic wave": longer * found.mechanical["elastic wave"]}, pace=PACE * found.pace)
+    return {"elastic wave": min(reference.courant for reference in scene.references) / WAVE * found["elastic wave"]}
+
+
+def present_limits(scene, clock) -> Limits:
+    """Limits of the present state; in the total frame heat steps may be longer too."""
+    found = limits(scene.space, directions(scene.space), scene.bodies, clock.reports)
+    return replace(found, mechanical=present_steps(scene, clock), pace=PACE * found.pace) if scene.references else found

@@ -111,7 +111,7 @@ def press_skin(skin, space, reference, chunk, dt, report):
     chunk.G[:] = 0.0
     for first in range(0, skin.x.shape[0], CHUNK):
         count = min(CHUNK, skin.x.shape[0] - first)
-        lay_down(skin.x, first, count, chunk.place)
+        lay_down(space, skin.x, first, count, chunk)
         gather(space, gradient, skin.x, first, chunk, count, reference.u)
         for p in range(count):
             s, square = first + p, 0.0
@@ -166,7 +166,7 @@ def average_volume_average(locking, space, body, reference, chunk):
     value, zero = chunk.f[0], chunk.S[0]
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
-        lay_down(X, first, count, chunk.place)
+        lay_down(space, X, first, count, chunk)
         gather(space, gradient, X, first, chunk, count, reference.u)
         for p in range(count):
             value[p] = V0[first + p] * swollen(space, X, first + p, chunk, p)

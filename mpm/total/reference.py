@@ -94,7 +94,7 @@ def project(space, reference, particles):
     chunk, gradient = new_chunk(D, reference.f, True, False), Bspline()
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
-        lay_down(X, first, count, chunk.place)
+        lay_down(space, X, first, count, chunk)
         for p in range(count):
             m = particles.m[first + p]
             chunk.m[p] = m
@@ -125,7 +125,7 @@ def show(space, particles, reference):
     mirror(reference.v, reference)
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
-        lay_down(X, first, count, chunk.place)
+        lay_down(space, X, first, count, chunk)
         gather(space, gradient, X, first, chunk, count, reference.u)
         for p in range(count):
             for c in range(D):
@@ -171,7 +171,7 @@ def sample(space, nodes, x, value, gradient):
     chunk, own = new_chunk(D, nodes, True, False), Bspline()
     for first in range(0, x.shape[0], CHUNK):
         count = min(CHUNK, x.shape[0] - first)
-        lay_down(x, first, count, chunk.place)
+        lay_down(space, x, first, count, chunk)
         gather(space, own, x, first, chunk, count, nodes)
         for p in range(count):
             for c in range(D):

@@ -107,7 +107,7 @@ def force_all(space, body, reference, chunk, dt, report):
     average_volume(body.locking, space, body, reference, chunk)
     for first in range(0, X.shape[0], CHUNK):
         count = min(CHUNK, X.shape[0] - first)
-        lay_down(X, first, count, chunk.place)
+        lay_down(space, X, first, count, chunk)
         take(space, X, first, chunk, count, reference.u)
         chunk.a[:] = 0.0
         squeeze = max(squeeze, answer_all(space, body, reference, chunk, first, count, dt, report))

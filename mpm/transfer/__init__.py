@@ -5,8 +5,9 @@ A transfer is a pair of linear maps; it knows no physics. With weights w, offset
     gather    value = sum w u,   slope = sum w u d/(sum w d^2),   gradient = sum u grad(w)
 Momentum, forces, heat, conduction and surface exchange are all of this form (docs/physics.md 3).
 
-Roles     scatter, gather: vectors, by dimension (line.py, plane.py, volume.py), then by basis: quadratic ones by rows of lanes (rows.py)
-          scatter_scalar, gather_scalar: one scalar field, for heat
+Roles     aim: stencils of a chunk's positions, once for all that is scattered or gathered there (quadratic bases; others find theirs as they go)
+          scatter, gather: vectors, by dimension (line.py, plane.py, volume.py), then by basis: quadratic ones by rows of lanes (rows.py)
+          scatter_scalar, gather_scalar: one scalar field, for heat (quadratic ones of eight particles up to a chunk: scalars.py)
           carry(scheme, ...): what a particle keeps of what it gathered; spread, collect: what a scheme scatters and gathers (apic.py, flip.py, xpic.py)
 Shapes    chunk arrays (component, particle of the chunk); nodes (node, columns(D)): momentum (then velocity), mass, room
 May use   mpm.basis, mpm.boundary, mpm.jit, mpm.lanes, mpm.state                      May not  see laws
@@ -16,6 +17,7 @@ Further files
     fixed      nodes to particles and back by the basis and its own gradient alone: what a body on fixed weights asks at every step
     packing    chunks packed for the rows of a stencil, and unpacked
     roles      what a transfer is asked, and the scratch that its chunks pass through
+    scalars    scatter and gather of one scalar field by quadratic B-splines, rows as four lanes
     stencils   stencils of a chunk of particles for quadratic B-splines, eight particles at once
 """
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from mpm.boundary import directions
 from mpm.lanes import EIGHT, load8, store
-from mpm.transfer.roles import CHUNK, carry, collect, deliver, gather, scatter, spread, uses_basis_gradient, wants_change
+from mpm.transfer.roles import CHUNK, aim, carry, collect, deliver, gather, scatter, spread, uses_basis_gradient, wants_change
 
 
 class Apic(NamedTuple):
@@ -36,6 +36,7 @@ def spread_apic(scheme, space, gradient, x, first, chunk, count, nodes, force, b
                 store(chunk.G, k * n + p, load8(chunk.S, k * n + p))
             else:
                 store(chunk.A, k * n + p, load8(chunk.A, k * n + p) + load8(chunk.S, k * n + p))
+    aim(space, chunk, count)
     scatter(space, gradient, x, first, chunk, count, nodes, box)
 
 

@@ -6,13 +6,13 @@ The sums of `gather` and `scatter` (roles.py) without slopes and masses: quadrat
 those two, with m and A of the chunk zero.
 """
 
-from mpm.jit import kernel, role
-from mpm.lanes import EIGHT, fma, like, load8, peek, splat8, store, thirds
+from mpm.jit import role
+from mpm.lanes import EIGHT, fma, like, load8, splat8, store, thirds
 from mpm.state import Axisymmetric, Cubic, Line, Plane, Quadratic, Volume
 from mpm.transfer.packing import columns_plane, columns_volume, pack, unpack
 from mpm.transfer.roles import Bspline, gather, scatter
-from mpm.transfer.rows import NODE, Y, Z, added, alike, begin_plane, flush, left_behind, load_rows, summed, thrice, weights, weights_along, zeros
-from mpm.transfer.stencils import CHUNK, FIRST, G, W, stencil_chunk
+from mpm.transfer.rows import NODE, Y, Z, added, alike, flush, left_behind, load_rows, summed, thrice, weights, weights_along, zeros
+from mpm.transfer.stencils import CHUNK, G, W
 
 
 @role(inline=True)
@@ -97,8 +97,6 @@ def give_cubic(basis, space, x, first, chunk, count, nodes):
 
 @take_plane.register(Quadratic)
 def take_plane_quadratic(basis, space, x, first, chunk, count, nodes):
-    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
-    begin_plane(space, chunk, count)
     s, begins, packed, wide, step = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1], 4 * space.n1
     for p in range(count):
         rows, w, mine = load_rows(nodes, begins[p], step), weights(s, Y + W * CHUNK + p), p * wide
@@ -140,19 +138,8 @@ def give_plane_quadratic(basis, space, x, first, chunk, count, nodes):
     flush(nodes, last, step, rows)
 
 
-@kernel(inline=True)
-def begin(space, chunk, count):
-    """Where the stencil of each particle begins among the numbers of the nodes of a volume."""
-    s, begins = chunk.s, chunk.begins
-    for p in range(count):
-        row = int(peek(s, FIRST * CHUNK + p)) * space.n1 + int(peek(s, Y + FIRST * CHUNK + p))
-        begins[p] = 4 * (row * space.n2 + int(peek(s, Z + FIRST * CHUNK + p)))
-
-
 @take_volume.register(Quadratic)
 def take_volume_quadratic(basis, space, x, first, chunk, count, nodes):
-    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
-    begin(space, chunk, count)
     s, begins, packed, wide = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1]
     step, plane = 4 * space.n2, 4 * space.n1 * space.n2
     for p in range(count):

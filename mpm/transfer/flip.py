@@ -7,7 +7,25 @@ Good values: blend 0 to 0.05; affine FLIP with 0.02.   Fails when: blend = 0 kee
 from typing import NamedTuple
 
 from mpm.jit import role
-from mpm.transfer.roles import Bspline, Chunk, Mls, carry, collect, deliver, gather, scatter, spread, wants_change
+from mpm.lanes import EIGHT, load8, store
+from mpm.transfer.roles import (
+    CHUNK,
+    Bspline,
+    Chunk,
+    Mls,
+    Values,
+    aim,
+    carry,
+    collect,
+    deliver,
+    gather,
+    pick_up,
+    scatter,
+    spread,
+    to_rows,
+    uses_basis_gradient,
+    wants_change,
+)  # fmt: skip
 
 
 class Flip(NamedTuple):
@@ -19,14 +37,18 @@ class Flip(NamedTuple):
 
 @carry.register(Flip)
 def carry_flip(scheme, particles, first, chunk, count, last):
-    for c in range(chunk.u.shape[0]):
-        for p in range(count):
-            old, dv = particles.v[first + p, c], chunk.change[c, p]
-            chunk.u[c, p] = old + dv + scheme.blend * (chunk.v[c, p] - dv - old)
-        for d in range(chunk.u.shape[0]):
-            for p in range(count):
-                chunk.U[c, d, p] = scheme.affine * chunk.C[c, d, p]
-    deliver(particles, first, chunk, count)
+    D, n, u = chunk.u.shape[0], CHUNK, chunk.u
+    to_rows(particles.v, first, count, u)
+    for p in range(0, count, EIGHT):
+        for k in range(0, D * n, n):
+            old, dv = load8(u, k + p), load8(chunk.change, k + p)
+            store(u, k + p, old + dv + scheme.blend * (load8(chunk.v, k + p) - dv - old))
+        for k in range(0, D * D * n, n):
+            store(chunk.U, k + p, scheme.affine * load8(chunk.C, k + p))
+    if last:
+        deliver(particles, first, chunk, count)
+    else:
+        pick_up(particles.v, first, count, u)  # the next step wants them again
 
 
 @wants_change.register(Flip)
@@ -36,7 +58,9 @@ def wants_change_flip(scheme):
 
 @spread.register(Flip)
 def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, box):
-    chunk.G[:] = 0.0
+    if uses_basis_gradient(gradient):
+        chunk.G[:] = 0.0
+    aim(space, chunk, count)
     scatter(space, gradient, x, first, chunk, count, nodes, box)
     # With either gradient the impulse S is read where it belongs: as slope (MLS) or as tensor (B-spline).
     slope, tensor = impulse_parts(gradient, chunk)
@@ -49,7 +73,7 @@ def spread_apart(scheme, space, gradient, x, first, chunk, count, nodes, force, 
 def collect_apart(scheme, space, gradient, x, first, chunk, count, nodes, force):
     c = chunk
     changed = Chunk(c.m, c.a, c.A, c.G, c.change, c.change, c.C, c.L, c.u, c.U, c.f, c.S, c.e, c.place, c.s, c.reach, c.none, c.uv, c.begins, c.packed)
-    gather(space, gradient, x, first, changed, count, force)
+    gather(space, Values(), x, first, changed, count, force)
     gather(space, gradient, x, first, chunk, count, nodes)
 
 

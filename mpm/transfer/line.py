@@ -2,7 +2,12 @@
 
 from mpm.basis import stencil
 from mpm.state import Line
-from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.roles import aim, gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+
+
+@aim.register(Line)
+def aim_line(space, chunk, count):
+    return None
 
 
 @scatter.register(Line)

@@ -6,7 +6,7 @@ columns of its tensor. Gathered: velocity, moment by direction (see `slope`), gr
 
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, fma, high, join, load4, load8, low, splat8, store, transposed
-from mpm.transfer.roles import uses_basis_gradient
+from mpm.transfer.roles import uses_basis_gradient, uses_slopes
 from mpm.transfer.stencils import CHUNK, OFFSET, ROWS, WITHIN
 
 FOUR = 4
@@ -102,7 +102,7 @@ def slope(space, chunk, k, p, v, moment):
 @kernel(inline=True)
 def same_gradient(gradient, chunk, count):
     """With the MLS gradient it is the slope: copied where it has an array of its own."""
-    if not uses_basis_gradient(gradient) and chunk.L.ctypes.data != chunk.C.ctypes.data:
+    if uses_slopes(gradient) and not uses_basis_gradient(gradient) and chunk.L.ctypes.data != chunk.C.ctypes.data:
         for k in range(chunk.v.shape[0] * chunk.v.shape[0]):
             for p in range(0, count, EIGHT):
                 store(chunk.L, k * CHUNK + p, load8(chunk.C, k * CHUNK + p))
@@ -116,8 +116,9 @@ def unpack_plane(space, gradient, chunk, count):
         v = unpack(packed, p, 0)
         store(chunk.v, p, v[0])
         store(chunk.v, CHUNK + p, v[1])
-        columns_plane(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
-        columns_plane(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
+        if uses_slopes(gradient):
+            columns_plane(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
+            columns_plane(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
         if uses_basis_gradient(gradient):
             columns_plane(chunk.L, 0, p, unpack(packed, p, 3))
             columns_plane(chunk.L, 1, p, unpack(packed, p, 4))
@@ -133,9 +134,10 @@ def unpack_volume(space, gradient, chunk, count):
         store(chunk.v, p, v[0])
         store(chunk.v, CHUNK + p, v[1])
         store(chunk.v, 2 * CHUNK + p, v[2])
-        columns_volume(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
-        columns_volume(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
-        columns_volume(chunk.C, 2, p, slope(space, chunk, 2, p, v, unpack(packed, p, 3)))
+        if uses_slopes(gradient):
+            columns_volume(chunk.C, 0, p, slope(space, chunk, 0, p, v, unpack(packed, p, 1)))
+            columns_volume(chunk.C, 1, p, slope(space, chunk, 1, p, v, unpack(packed, p, 2)))
+            columns_volume(chunk.C, 2, p, slope(space, chunk, 2, p, v, unpack(packed, p, 3)))
         if uses_basis_gradient(gradient):
             columns_volume(chunk.L, 0, p, unpack(packed, p, 4))
             columns_volume(chunk.L, 1, p, unpack(packed, p, 5))

@@ -4,11 +4,37 @@ Axisymmetric bodies use the same: the factor r sits in their masses and volumes.
 """
 
 from mpm.basis import stencil
-from mpm.jit import role
+from mpm.jit import kernel, role
+from mpm.lanes import EIGHT
 from mpm.state import Axisymmetric, Cubic, Linear, Plane, Quadratic
-from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
-from mpm.transfer.rows import gather_plane, scatter_plane
-from mpm.transfer.stencils import stencil_chunk
+from mpm.transfer.roles import aim, gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.rows import begin_plane, gather_plane, scatter_plane
+from mpm.transfer.scalars import gather_scalar_plane, scatter_scalar_plane
+from mpm.transfer.stencils import CHUNK, stencil_chunk, widen
+
+
+@aim.register(Plane)
+@aim.register(Axisymmetric)
+def aim_axisymmetric_or_plane(space, chunk, count):
+    aim_by_basis(space.basis, space, chunk, count)
+
+
+@role(inline=True)
+def aim_by_basis(basis, space, chunk, count):
+    """As aim."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@aim_by_basis.register(Quadratic)
+def aim_plane_quadratic(basis, space, chunk, count):
+    stencil_chunk(space, chunk.place, count, chunk.s)
+    begin_plane(space, chunk, count)
+
+
+@aim_by_basis.register(Linear)
+@aim_by_basis.register(Cubic)
+def aim_plane_cubic_or_linear(basis, space, chunk, count):
+    return None
 
 
 @scatter.register(Plane)
@@ -25,7 +51,7 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 @scatter_by_basis.register(Quadratic)
 def scatter_plane_quadratic(basis, space, gradient, x, first, chunk, count, nodes, box):
-    stencil_chunk(space, chunk.place, count, chunk.s, box)
+    widen(chunk.s, count, box)
     scatter_plane(space, gradient, chunk, count, nodes)
 
 
@@ -71,7 +97,6 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 @gather_by_basis.register(Quadratic)
 def gather_plane_quadratic(basis, space, gradient, x, first, chunk, count, nodes):
-    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_plane(space, gradient, chunk, count, nodes)
 
 
@@ -118,6 +143,31 @@ def gather_plane_cubic_or_linear(basis, space, gradient, x, first, chunk, count,
 @scatter_scalar.register(Plane)
 @scatter_scalar.register(Axisymmetric)
 def scatter_scalar_axisymmetric_or_plane(space, x, first, count, a, A, G, nodes):
+    scatter_scalar_by_basis(space.basis, space, x, first, count, a, A, G, nodes)
+
+
+@role
+def scatter_scalar_by_basis(basis, space, x, first, count, a, A, G, nodes):
+    """As scatter_scalar."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@scatter_scalar_by_basis.register(Quadratic)
+def scatter_scalar_plane_quadratic(basis, space, x, first, count, a, A, G, nodes):
+    if count < EIGHT or count > CHUNK:
+        scatter_one_by_one(space, x, first, count, a, A, G, nodes)
+    else:
+        scatter_scalar_plane(space, x, first, count, a, A, G, nodes)
+
+
+@scatter_scalar_by_basis.register(Linear)
+@scatter_scalar_by_basis.register(Cubic)
+def scatter_scalar_plane_cubic_or_linear(basis, space, x, first, count, a, A, G, nodes):
+    scatter_one_by_one(space, x, first, count, a, A, G, nodes)
+
+
+@kernel
+def scatter_one_by_one(space, x, first, count, a, A, G, nodes):
     h, inverse, n1 = space.h, 1.0 / space.h, space.n1
     for p in range(count):
         i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
@@ -132,6 +182,31 @@ def scatter_scalar_axisymmetric_or_plane(space, x, first, count, a, A, G, nodes)
 @gather_scalar.register(Plane)
 @gather_scalar.register(Axisymmetric)
 def gather_scalar_axisymmetric_or_plane(space, x, first, count, nodes, value, slope, grad):
+    gather_scalar_by_basis(space.basis, space, x, first, count, nodes, value, slope, grad)
+
+
+@role
+def gather_scalar_by_basis(basis, space, x, first, count, nodes, value, slope, grad):
+    """As gather_scalar."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@gather_scalar_by_basis.register(Quadratic)
+def gather_scalar_plane_quadratic(basis, space, x, first, count, nodes, value, slope, grad):
+    if count < EIGHT or count > CHUNK:
+        gather_one_by_one(space, x, first, count, nodes, value, slope, grad)
+    else:
+        gather_scalar_plane(space, x, first, count, nodes, value, slope, grad)
+
+
+@gather_scalar_by_basis.register(Linear)
+@gather_scalar_by_basis.register(Cubic)
+def gather_scalar_plane_cubic_or_linear(basis, space, x, first, count, nodes, value, slope, grad):
+    gather_one_by_one(space, x, first, count, nodes, value, slope, grad)
+
+
+@kernel
+def gather_one_by_one(space, x, first, count, nodes, value, slope, grad):
     inverse, n1 = 1.0 / space.h, space.n1
     for p in range(count):
         i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)

@@ -19,6 +19,10 @@ class Bspline(NamedTuple):
     """Gradient of the basis itself."""
 
 
+class Values(NamedTuple):
+    """No gradient: of a gather, values alone count."""
+
+
 class Chunk(NamedTuple):
     """Scratch of one chunk. In: what to scatter; out: what was gathered."""
 
@@ -46,13 +50,19 @@ class Chunk(NamedTuple):
 
 @role(inline=True)
 def scatter(space, gradient, x, first, chunk, count, nodes, box):
-    """Add `count` particles from `first`, whose positions `lay_down` put into the chunk, on to `nodes`; `box` (D, 2) grows to the nodes touched."""
+    """Add `count` particles from `first`, where `lay_down` or `aim` found them, on to `nodes`; `box` (D, 2) grows to the nodes touched."""
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 
 @role(inline=True)
 def gather(space, gradient, x, first, chunk, count, nodes):
-    """Fill v, C, L of the chunk from the nodal velocities, at the positions that `lay_down` put into it."""
+    """Fill v, C, L of the chunk from the nodal velocities, where `lay_down` or `aim` found it."""
+    raise TypeError(f"no transfer for {type(space).__name__}")
+
+
+@role(inline=True)
+def aim(space, chunk, count):
+    """Stencils of the positions in chunk.place, for all that is scattered and gathered there."""
     raise TypeError(f"no transfer for {type(space).__name__}")
 
 
@@ -102,13 +112,31 @@ def uses_basis_gradient(gradient):
 
 
 @uses_basis_gradient.register(Mls)
-def uses_basis_gradient_mls(gradient):
+@uses_basis_gradient.register(Values)
+def uses_basis_gradient_values_or_mls(gradient):
     return False
 
 
 @uses_basis_gradient.register(Bspline)
 def uses_basis_gradient_bspline(gradient):
     return True
+
+
+@role
+def uses_slopes(gradient):
+    """Whether slopes and gradients are gathered: a constant at compile time."""
+    raise TypeError(f"no gradient {type(gradient).__name__}")
+
+
+@uses_slopes.register(Mls)
+@uses_slopes.register(Bspline)
+def uses_slopes_bspline_or_mls(gradient):
+    return True
+
+
+@uses_slopes.register(Values)
+def uses_slopes_values(gradient):
+    return False
 
 
 def columns(D):
@@ -155,8 +183,15 @@ def new_chunk(D, like, own_gradient, own_velocity):
 
 
 @kernel(inline=True)
-def lay_down(x, first, count, place):
-    """Positions of a chunk's particles as rows (D, n). Lanes behind the last particle repeat it. By dimension: LLVM sees strides that are constants."""
+def lay_down(space, x, first, count, chunk):
+    """Positions of a chunk's particles in chunk.place, and their stencils."""
+    to_rows(x, first, count, chunk.place)
+    aim(space, chunk, count)
+
+
+@kernel(inline=True)
+def to_rows(x, first, count, place):
+    """Vectors (N, D) of a chunk's particles as rows (D, n). Lanes behind the last particle repeat it. By dimension: LLVM sees strides that are constants."""
     D, n = x.shape[1], CHUNK
     if D == 3:
         for p in range(count):
@@ -179,7 +214,7 @@ def lay_down(x, first, count, place):
 
 @kernel(inline=True)
 def pick_up(x, first, count, place):
-    """The inverse of `lay_down`."""
+    """The inverse of `to_rows`."""
     D, n = x.shape[1], CHUNK
     if D == 3:
         for p in range(count):

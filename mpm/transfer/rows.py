@@ -9,7 +9,7 @@ The rows of a stencil stay in registers while consecutive particles share them, 
 from mpm.jit import kernel
 from mpm.lanes import EIGHT, fma, like, load4, load8, load_row, peek, splat4, store, thirds, three
 from mpm.transfer.packing import pack_plane, pack_volume, unpack_plane, unpack_volume
-from mpm.transfer.roles import uses_basis_gradient
+from mpm.transfer.roles import uses_basis_gradient, uses_slopes
 from mpm.transfer.stencils import CHUNK, FIRST, ROWS, G, W
 
 NODE = 4  # numbers of a node
@@ -25,14 +25,20 @@ def begin_plane(space, chunk, count):
 
 
 @kernel(inline=True)
-def begin_volume(space, chunk, count):
-    """The same in three directions, and the products of the weights across rows."""
-    s, begins = chunk.s, chunk.begins
+def across(chunk, count):
+    """Products of the weights across rows, in three directions."""
+    s = chunk.s
     for p in range(0, count, EIGHT):
         for i in range(3):
             u = load8(s, (W + i) * CHUNK + p)
             for j in range(3):
                 store(chunk.uv, (3 * i + j) * CHUNK + p, u * load8(s, Y + (W + j) * CHUNK + p))
+
+
+@kernel(inline=True)
+def begin_volume(space, chunk, count):
+    """As begin_plane, in three directions."""
+    s, begins = chunk.s, chunk.begins
     for p in range(count):
         row = int(peek(s, FIRST * CHUNK + p)) * space.n1 + int(peek(s, Y + FIRST * CHUNK + p))
         begins[p] = 4 * (row * space.n2 + int(peek(s, Z + FIRST * CHUNK + p)))
@@ -106,7 +112,6 @@ def left_behind(nodes, at, step, rows):
 def scatter_plane(space, gradient, chunk, count, nodes):
     """The particles of a chunk on to the nodes (n, 4) of a plane."""
     pack_plane(space, gradient, chunk, count)
-    begin_plane(space, chunk, count)
     s, begins, packed, wide, step = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1], 4 * space.n1
     rows, last = zeros(nodes), -1
     for p in range(count):
@@ -134,7 +139,6 @@ def scatter_plane(space, gradient, chunk, count, nodes):
 def scatter_volume(space, gradient, chunk, count, nodes):
     """The particles of a chunk on to the nodes (n, 4) of a volume."""
     pack_volume(space, gradient, chunk, count)
-    begin_volume(space, chunk, count)
     s, begins, packed, wide = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1]
     step, plane = 4 * space.n2, 4 * space.n1 * space.n2
     front, middle, back, last = zeros(nodes), zeros(nodes), zeros(nodes), -1
@@ -195,7 +199,6 @@ def load_rows(nodes, at, step):
 @kernel(inline=True)
 def gather_plane(space, gradient, chunk, count, nodes):
     """Velocity, moments and gradient of the particles of a chunk in a plane."""
-    begin_plane(space, chunk, count)
     s, begins, packed, wide, step = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1], 4 * space.n1
     for p in range(count):
         at = begins[p]
@@ -204,8 +207,9 @@ def gather_plane(space, gradient, chunk, count, nodes):
         v = thirds(v)
         value, moment = sum_and_moment(v, w)
         store(packed, mine, value)
-        store(packed, mine + 4, summed(thirds(X), w))
-        store(packed, mine + 8, moment)
+        if uses_slopes(gradient):
+            store(packed, mine + 4, summed(thirds(X), w))
+            store(packed, mine + 8, moment)
         if uses_basis_gradient(gradient):
             store(packed, mine + 12, summed(thirds(summed(rows, weights(s, G * CHUNK + p))), w))
             store(packed, mine + 16, summed(v, weights(s, Y + G * CHUNK + p)))
@@ -215,7 +219,6 @@ def gather_plane(space, gradient, chunk, count, nodes):
 @kernel(inline=True)
 def gather_volume(space, gradient, chunk, count, nodes):
     """The same in a volume."""
-    begin_volume(space, chunk, count)
     s, begins, packed, wide = chunk.s, chunk.begins, chunk.packed, chunk.packed.shape[1]
     step, plane = 4 * space.n2, 4 * space.n1 * space.n2
     for p in range(count):
@@ -229,9 +232,10 @@ def gather_volume(space, gradient, chunk, count, nodes):
         row, mine = thirds(sums), p * wide
         value, moment = sum_and_moment(row, w)
         store(packed, mine, value)
-        store(packed, mine + 4, summed(thirds(X), w))
-        store(packed, mine + 8, summed(thirds(fY + mY + bY), w))
-        store(packed, mine + 12, moment)
+        if uses_slopes(gradient):
+            store(packed, mine + 4, summed(thirds(X), w))
+            store(packed, mine + 8, summed(thirds(fY + mY + bY), w))
+            store(packed, mine + 12, moment)
         if uses_basis_gradient(gradient):
             v, V = weights(s, Y + W * CHUNK + p), weights(s, Y + G * CHUNK + p)
             gx = summed((summed(front, v), summed(middle, v), summed(back, v)), weights(s, G * CHUNK + p))

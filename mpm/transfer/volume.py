@@ -1,11 +1,37 @@
 """Transfers in three directions: eight, twenty-seven or sixty-four nodes a particle, by the basis of the space."""
 
 from mpm.basis import stencil
-from mpm.jit import role
+from mpm.jit import kernel, role
+from mpm.lanes import EIGHT
 from mpm.state import Cubic, Linear, Quadratic, Volume
-from mpm.transfer.roles import gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
-from mpm.transfer.rows import gather_volume, scatter_volume
-from mpm.transfer.stencils import stencil_chunk
+from mpm.transfer.roles import aim, gather, gather_scalar, scatter, scatter_scalar, uses_basis_gradient
+from mpm.transfer.rows import across, begin_volume, gather_volume, scatter_volume
+from mpm.transfer.scalars import gather_scalar_volume, scatter_scalar_volume
+from mpm.transfer.stencils import CHUNK, stencil_chunk, widen
+
+
+@aim.register(Volume)
+def aim_in_volume(space, chunk, count):
+    aim_by_basis(space.basis, space, chunk, count)
+
+
+@role(inline=True)
+def aim_by_basis(basis, space, chunk, count):
+    """As aim."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@aim_by_basis.register(Quadratic)
+def aim_volume_quadratic(basis, space, chunk, count):
+    stencil_chunk(space, chunk.place, count, chunk.s)
+    across(chunk, count)
+    begin_volume(space, chunk, count)
+
+
+@aim_by_basis.register(Linear)
+@aim_by_basis.register(Cubic)
+def aim_volume_cubic_or_linear(basis, space, chunk, count):
+    return None
 
 
 @scatter.register(Volume)
@@ -21,7 +47,7 @@ def scatter_by_basis(basis, space, gradient, x, first, chunk, count, nodes, box)
 
 @scatter_by_basis.register(Quadratic)
 def scatter_volume_quadratic(basis, space, gradient, x, first, chunk, count, nodes, box):
-    stencil_chunk(space, chunk.place, count, chunk.s, box)
+    widen(chunk.s, count, box)
     scatter_volume(space, gradient, chunk, count, nodes)
 
 
@@ -77,7 +103,6 @@ def gather_by_basis(basis, space, gradient, x, first, chunk, count, nodes):
 
 @gather_by_basis.register(Quadratic)
 def gather_volume_quadratic(basis, space, gradient, x, first, chunk, count, nodes):
-    stencil_chunk(space, chunk.place, count, chunk.s, chunk.reach)
     gather_volume(space, gradient, chunk, count, nodes)
 
 
@@ -126,7 +151,32 @@ def gather_volume_cubic_or_linear(basis, space, gradient, x, first, chunk, count
 
 
 @scatter_scalar.register(Volume)
-def scatter_scalar_volume(space, x, first, count, a, A, G, nodes):
+def scatter_scalar_in_volume(space, x, first, count, a, A, G, nodes):
+    scatter_scalar_by_basis(space.basis, space, x, first, count, a, A, G, nodes)
+
+
+@role
+def scatter_scalar_by_basis(basis, space, x, first, count, a, A, G, nodes):
+    """As scatter_scalar."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@scatter_scalar_by_basis.register(Quadratic)
+def scatter_scalar_volume_quadratic(basis, space, x, first, count, a, A, G, nodes):
+    if count < EIGHT or count > CHUNK:
+        scatter_one_by_one(space, x, first, count, a, A, G, nodes)
+    else:
+        scatter_scalar_volume(space, x, first, count, a, A, G, nodes)
+
+
+@scatter_scalar_by_basis.register(Linear)
+@scatter_scalar_by_basis.register(Cubic)
+def scatter_scalar_volume_cubic_or_linear(basis, space, x, first, count, a, A, G, nodes):
+    scatter_one_by_one(space, x, first, count, a, A, G, nodes)
+
+
+@kernel
+def scatter_one_by_one(space, x, first, count, a, A, G, nodes):
     h, inverse, n1, n2 = space.h, 1.0 / space.h, space.n1, space.n2
     for p in range(count):
         i0, wx, gx, dx, _ = stencil(space.basis, x[first + p, 0] * inverse)
@@ -143,7 +193,32 @@ def scatter_scalar_volume(space, x, first, count, a, A, G, nodes):
 
 
 @gather_scalar.register(Volume)
-def gather_scalar_volume(space, x, first, count, nodes, value, slope, grad):
+def gather_scalar_in_volume(space, x, first, count, nodes, value, slope, grad):
+    gather_scalar_by_basis(space.basis, space, x, first, count, nodes, value, slope, grad)
+
+
+@role
+def gather_scalar_by_basis(basis, space, x, first, count, nodes, value, slope, grad):
+    """As gather_scalar."""
+    raise TypeError(f"no basis {type(basis).__name__}")
+
+
+@gather_scalar_by_basis.register(Quadratic)
+def gather_scalar_volume_quadratic(basis, space, x, first, count, nodes, value, slope, grad):
+    if count < EIGHT or count > CHUNK:
+        gather_one_by_one(space, x, first, count, nodes, value, slope, grad)
+    else:
+        gather_scalar_volume(space, x, first, count, nodes, value, slope, grad)
+
+
+@gather_scalar_by_basis.register(Linear)
+@gather_scalar_by_basis.register(Cubic)
+def gather_scalar_volume_cubic_or_linear(basis, space, x, first, count, nodes, value, slope, grad):
+    gather_one_by_one(space, x, first, count, nodes, value, slope, grad)
+
+
+@kernel
+def gather_one_by_one(space, x, first, count, nodes, value, slope, grad):
     inverse, n1, n2 = 1.0 / space.h, space.n1, space.n2
     for p in range(count):
         i0, wx, gx, _, bx = stencil(space.basis, x[first + p, 0] * inverse)

@@ -8,8 +8,9 @@ Good values: order 2 to 5.   Fails when: long runs of many small steps must keep
 
 from typing import NamedTuple
 
+from mpm.lanes import EIGHT, load8, store
 from mpm.transfer.flip import collect_apart, spread_apart
-from mpm.transfer.roles import carry, collect, deliver, spread, wants_change
+from mpm.transfer.roles import CHUNK, carry, collect, deliver, spread, wants_change
 
 
 class Xpic(NamedTuple):
@@ -20,13 +21,11 @@ class Xpic(NamedTuple):
 
 @carry.register(Xpic)
 def carry_xpic(scheme, particles, first, chunk, count, last):
-    for c in range(chunk.u.shape[0]):
-        for p in range(count):
-            chunk.u[c, p] = chunk.change[c, p]
-        for d in range(chunk.u.shape[0]):
-            for p in range(count):
-                chunk.U[c, d, p] = 0.0
-    deliver(particles, first, chunk, count)
+    for k in range(0, chunk.u.shape[0] * CHUNK, EIGHT):
+        store(chunk.u, k, load8(chunk.change, k))
+    chunk.U[:] = 0.0
+    if last:
+        deliver(particles, first, chunk, count)
 
 
 @wants_change.register(Xpic)

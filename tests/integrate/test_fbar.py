@@ -37,7 +37,7 @@ def relaxed(space, field, share=0.02):
     x, D = body.particles.x, directions(space)
     chunk = new_chunk(D, x, True, False)
     average(body.locking, space, Mls(), body, chunk, nodes, box, np.full((3, 2), KINDS["contact"]), DT)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, Mls(), x, 0, chunk, N, nodes)
     before, own = chunk.L[..., :N].copy(), np.array([grown(space, x, p, chunk, p, DT) for p in range(N)])
     relax(body.locking, space, x, 0, chunk, N, DT)

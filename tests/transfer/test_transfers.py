@@ -65,7 +65,7 @@ def empty_box(D):
 def scattered(space, gradient, x, chunk):
     D = directions(space)
     nodes = np.zeros((math.prod(extents(space)), columns(D)))
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     scatter(space, gradient, x, 0, chunk, N, nodes, empty_box(D))
     return nodes
 
@@ -89,7 +89,7 @@ def test_gather_is_exact_for_linear_fields(space, gradient):
     nodes = np.zeros((math.prod(extents(space)), columns(D)))
     nodes[:, :D] = constant + nodes_at(space) @ slope.T
     chunk = chunk_of(D)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, gradient, x, 0, chunk, N, nodes)
     assert np.allclose(chunk.v[:, :N].T, constant + x @ slope.T, atol=1e-13)
     for gathered in (chunk.C, chunk.L):
@@ -121,7 +121,7 @@ def test_gather_is_the_transpose_of_scatter(space, gradient):
     chunk.G[..., :N] = np.random.default_rng(4).standard_normal((D, D, N)) if isinstance(gradient, Bspline) else 0.0
     nodes = scattered(space, gradient, x, chunk)
     u = np.random.default_rng(5).standard_normal(nodes.shape)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, gradient, x, 0, chunk, N, u)
     expected = np.sum(chunk.a * chunk.v) + H * H / 4 * np.sum(chunk.A * chunk.C) + np.sum(chunk.G * chunk.L)
     assert np.sum(nodes[:, :D] * u[:, :D]) == pytest.approx(expected, rel=1e-11)
@@ -134,7 +134,7 @@ def test_one_scalar_field_as_vectors(space):
     chunk.G[..., :N] = np.random.default_rng(4).standard_normal((D, D, N))
     nodes = scattered(space, Bspline(), x, chunk)
     u = np.random.default_rng(5).standard_normal(nodes.shape)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     gather(space, Bspline(), x, 0, chunk, N, u)
     for c in range(D):
         one = np.zeros(len(nodes))
@@ -145,11 +145,31 @@ def test_one_scalar_field_as_vectors(space):
         assert np.allclose(value, chunk.v[c, :N]) and np.allclose(slope, chunk.C[c, :, :N]) and np.allclose(grad, chunk.L[c, :, :N])
 
 
+@pytest.mark.parametrize("space", SPACES[1:], ids=lambda space: type(space).__name__)
+def test_many_particles_of_a_scalar_field_at_once(space):
+    """Eight and more over lanes are each alone: scattered, value, slope and gradient, on walls and where two follow one another in a cell; no node beyond."""
+    D, rng, many = directions(space), np.random.default_rng(6), 19
+    reach, n = (np.array(extents(space)[:D]) - 2 * PAD - 1) * H, math.prod(extents(space))
+    x = rng.uniform(0, 1, (many, D)) * reach
+    x[0], x[1], x[5], x[-1] = 0.0, 0.01 * H, x[4] + 1e-3 * H, reach
+    a, A, G, u = rng.standard_normal(many), rng.standard_normal((D, many)), rng.standard_normal((D, many)), rng.standard_normal(n)
+    together, alone = np.zeros(n), np.zeros(n)
+    value, slope, grad = np.zeros(many), np.zeros((D, many)), np.zeros((D, many))
+    scatter_scalar(space, x, 0, many, a, A, G, together)
+    gather_scalar(space, x, 0, many, u, value, slope, grad)
+    for p in range(many):
+        one, two, three = np.zeros(1), np.zeros((D, 1)), np.zeros((D, 1))
+        scatter_scalar(space, x, p, 1, a[p : p + 1].copy(), A[:, p : p + 1].copy(), G[:, p : p + 1].copy(), alone)
+        gather_scalar(space, x, p, 1, u, one, two, three)
+        assert np.allclose([value[p], *slope[:, p], *grad[:, p]], [*one, *two[:, 0], *three[:, 0]], rtol=0, atol=1e-13)
+    assert np.allclose(together, alone, rtol=0, atol=1e-13) and np.array_equal(together != 0, alone != 0)
+
+
 @over_spaces
 def test_the_box_holds_the_nodes_touched_and_no_more(space):
     D, x, chunk = directions(space), positions(space), chunk_of(directions(space))
     nodes, box = np.zeros((math.prod(extents(space)), columns(D))), empty_box(D)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     scatter(space, Mls(), x, 0, chunk, N, nodes, box)
     mass = nodes[:, D].reshape(extents(space)[:D])
     for axis in range(D):
@@ -169,13 +189,13 @@ def test_schemes_scatter_the_same_momentum_and_force(space, gradient, scheme):
     copy.A[:] += 0.0 if isinstance(gradient, Bspline) else copy.S
     expected = scattered(space, gradient, x, copy)
     nodes, force = np.zeros_like(expected), np.zeros_like(expected)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     spread(scheme, space, gradient, x, 0, chunk, N, nodes, force, empty_box(D))
     assert np.allclose(nodes + force, expected, atol=1e-12)
     assert np.any(force) == wants_change(scheme)
-    lay_down(x, 0, N, chunk.place)
+    lay_down(space, x, 0, N, chunk)
     collect(scheme, space, gradient, x, 0, chunk, N, nodes, force)
-    lay_down(x, 0, N, copy.place)
+    lay_down(space, x, 0, N, copy)
     gather(space, gradient, x, 0, copy, N, nodes)
     assert np.allclose(chunk.v, copy.v, atol=1e-13) and np.allclose(chunk.C, copy.C, atol=1e-12) and np.allclose(chunk.L, copy.L, atol=1e-12)
     if wants_change(scheme):
