@@ -25,6 +25,7 @@ FLAGS = {"fastmath": {"contract", "arcp", "nsz", "afn"}, "error_model": "numpy",
 # For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (an atomic operation each, and a
 # tuple of arrays has as many as it has fields). So they cannot make arrays, and must not return any.
 INLINE = {"forceinline": True, "_nrt": False}
+ARRAYS = {"_nrt": True}  # for functions that make arrays and are called from INLINE ones, which else hand down that there are none
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
 CACHE = cache.kernels()
@@ -70,26 +71,26 @@ def whole(path: str) -> bool:
     return hashlib.sha256(data[:-32]).digest() == data[-32:]
 
 
-def kernel(function=None, *, inline=False):
-    """Compile with the house's flags and cache on disk. `inline=True` for functions that a kernel calls per particle or chunk: see INLINE."""
+def kernel(function=None, *, inline=False, arrays=False):
+    """Compile with the house's flags and cache on disk. `inline=True` for functions that a kernel calls per particle, chunk or step: see INLINE, ARRAYS."""
     if function is None:
-        return functools.partial(kernel, inline=inline)
+        return functools.partial(kernel, inline=inline, arrays=arrays)
     config.CACHE_DIR = str(CACHE / fingerprint(function.__module__))
-    made = njit(cache=True, **FLAGS, **(INLINE if inline else {}))(function)
+    made = njit(cache=True, **FLAGS, **(INLINE if inline else ARRAYS if arrays else {}))(function)
     if hasattr(getattr(made, "_cache", None), "_cache_file"):  # there is none under NUMBA_DISABLE_JIT
         made._cache._cache_file.__class__ = Sealed
     return made
 
 
-def role(stub=None, *, inline=False):
+def role(stub=None, *, inline=False, arrays=False):
     """A function chosen by the type of its first argument, in Python and in compiled code alike.
 
     `stub` gives name, argument names and docstring. A law registers itself with `@stub.register(Kind)`, `Kind` a
     NamedTuple class, on a function with the same argument names and no annotations (Numba compares the signatures).
-    Kinds are types, values are run-time arguments: a sweep over values shares one compiled kernel. `inline` as in `kernel`.
+    Kinds are types, values are run-time arguments: a sweep over values shares one compiled kernel. `inline` and `arrays` as in `kernel`.
     """
     if stub is None:
-        return functools.partial(role, inline=inline)
+        return functools.partial(role, inline=inline, arrays=arrays)
     laws = functools.singledispatch(stub)
 
     @functools.wraps(stub)
@@ -107,5 +108,5 @@ def role(stub=None, *, inline=False):
         return enter(kind, function)
 
     laws.register = register
-    overload(laws, jit_options=FLAGS | INNER | (INLINE if inline else {}))(pick)
+    overload(laws, jit_options=FLAGS | INNER | (INLINE if inline else ARRAYS if arrays else {}))(pick)
     return laws

@@ -88,16 +88,16 @@ def assemble(space, body, nodes, u, dt, r, band, want):
                 n, turn = D * k + e, sign(nodes, p, k, e)
                 eq[n] = nodes.eq[nodes.node[p, k], e]
                 B[n, 0], B[n, 1], B[n, 2] = turn * g[k, 0], turn * g[k, 1], turn * wr[k]
-        for b in range(D * M):
-            if eq[b] < 0:
+        for m in range(D * M):
+            if eq[m] < 0:
                 continue
             for i in range(5):
-                H[i] = V0[p] * (G[i, 0] * B[b, 0] + G[i, 1] * B[b, 1] + G[i, 4] * B[b, 2] if b % D == 0 else G[i, 2] * B[b, 0] + G[i, 3] * B[b, 1])
-            for a in range(b - b % D, D * M, D):
-                if a >= b:
-                    put(band, eq[a], eq[b], a == b, B[a, 0] * H[0] + B[a, 1] * H[1] + B[a, 2] * H[4])
+                H[i] = V0[p] * (G[i, 0] * B[m, 0] + G[i, 1] * B[m, 1] + G[i, 4] * B[m, 2] if m % D == 0 else G[i, 2] * B[m, 0] + G[i, 3] * B[m, 1])
+            for n in range(m - m % D, D * M, D):
+                if n >= m:
+                    put(band, eq[n], eq[m], n == m, B[n, 0] * H[0] + B[n, 1] * H[1] + B[n, 2] * H[4])
                 if D == 2:
-                    put(band, eq[a + 1], eq[b], a + 1 == b, B[a + 1, 0] * H[2] + B[a + 1, 1] * H[3])
+                    put(band, eq[n + 1], eq[m], n + 1 == m, B[n + 1, 0] * H[2] + B[n + 1, 1] * H[3])
         b1, b2, b3 = a[0, 0] + a[1, 0] + a[2, 0], a[0, 1] + a[1, 1] + a[2, 1], a[0, 2] + a[1, 2] + a[2, 2]
         bulk[0, 0], bulk[1, 1], bulk[2, 2] = c * c * b1 + s * s * b2, s * s * b1 + c * c * b2, b3
         bulk[0, 1] = bulk[1, 0] = c * s * (b1 - b2)

@@ -53,7 +53,7 @@ def advance(method, bodies, buffers, walls, gravity, dt, kick, steps, begun, rep
             clean(method, buffers, now)
 
 
-@kernel
+@kernel(inline=True)
 def clean(method, buffers, now):
     """Zero the nodes that were used, for the scatter after next; empty their box and take their marks away."""
     shape, box, blocks = extents(method.space), buffers.boxes[now], buffers.blocks[now]
@@ -64,7 +64,7 @@ def clean(method, buffers, now):
     empty(shape, box)
 
 
-@kernel
+@kernel(inline=True)
 def on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, times, reports):
     """What is done to the nodes of buffer `now` between scatter and gather; times: dt, and for how long the impulse acts."""
     dt, kick = times
@@ -77,7 +77,7 @@ def on_nodes(method, bodies, chunk, buffers, now, sparse, walls, gravity, times,
     compress_all(space, gradient, bodies, chunk, nodes, box, walls, dt, reports)
 
 
-@kernel
+@kernel(inline=True)
 def pass_all(method, bodies, chunk, buffers, moment, reports):
     """Gather from buffer `now` (unless it is the opening of a run), respond, and scatter on to the other (unless it is the last step).
 
@@ -90,7 +90,7 @@ def pass_all(method, bodies, chunk, buffers, moment, reports):
     return ok
 
 
-@kernel
+@kernel(arrays=True)
 def pass_body(method, body, chunk, buffers, moment, report):
     """One body's part of `pass_all`. The opening is here for the compiler's sake: the response and the scatter are compiled once."""
     space, x, now, last = method.space, body.particles.x, moment.now, moment.last
@@ -144,7 +144,7 @@ def step_chunk(method, body, chunk, source, moment, first, count, shake, report)
     return True
 
 
-@kernel
+@kernel(arrays=True)
 def update(method, buffers, now, walls, gravity, dt):
     """Nodes of buffer `now`: fold at walls, v_i = p_i/m_i, v_i+ = v_i + dt (f_i/m_i + g), walls, unfold.
 

@@ -56,14 +56,14 @@ def grown_volume(space, x, i, chunk, p, dt):
     return dilation3(increment3(chunk.L, p, dt))
 
 
-@kernel
+@kernel(inline=True)
 def average_all(space, gradient, bodies, chunk, nodes, box, walls, dt):
     """Nodal averages of the coming step's volume changes, body by body, where a body wants them."""
     for body in literal_unroll(bodies):
         average(body.locking, space, gradient, body, chunk, nodes, box, walls, dt)
 
 
-@kernel
+@kernel(inline=True)
 def any_averages(bodies):
     """Whether a body averages."""
     found = False
@@ -88,7 +88,7 @@ def averages_average(locking):
     return True
 
 
-@role
+@role(arrays=True)
 def average(locking, space, gradient, body, chunk, nodes, box, walls, dt):
     """Fill the nodal averages of one body from the nodal velocities."""
     raise TypeError(f"no averaging by {type(locking).__name__}")

@@ -49,7 +49,7 @@ def divergence_volume(space, x, i, chunk, p):
     return chunk.L[0, 0, p] + chunk.L[1, 1, p] + chunk.L[2, 2, p]
 
 
-@kernel
+@kernel(inline=True)
 def compress_all(space, gradient, bodies, chunk, nodes, box, walls, dt, reports):
     """Heat of the coming step's change of volume, body by body, where a body takes it from the grid."""
     b = 0
@@ -58,7 +58,7 @@ def compress_all(space, gradient, bodies, chunk, nodes, box, walls, dt, reports)
         b += 1
 
 
-@role
+@role(arrays=True)
 def compress(heating, space, gradient, body, chunk, nodes, box, walls, dt, report):
     """Heat one body by its change of volume, from the nodal velocities."""
     raise TypeError(f"no heating {type(heating).__name__}")

@@ -23,7 +23,7 @@ from mpm.transfer import CHUNK, Apic, Flip, Xpic, gather, gather_scalar, lay_dow
 FIELDS = 4  # scratch fields of `sharpened`
 
 
-@role
+@role(arrays=True)
 def sharpen(scheme, method, bodies, chunk, buffers, now, walls):
     """Between `update` and gather: add q_k to the change of velocity of buffer `now`. The other is scratch, zero before and after."""
     raise TypeError(f"no transfer scheme {type(scheme).__name__}")

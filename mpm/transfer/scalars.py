@@ -29,7 +29,7 @@ class Scalars(NamedTuple):
     told: np.ndarray  # (1 + 2 D, n) value, slope and gradient of eight particles at once
 
 
-@kernel
+@kernel(arrays=True)
 def new_scalars(D):
     """Uninitialised, at the start of a cache line. Made for every chunk: a chunk of heat has no scratch of its own to bring."""
     n, wide = CHUNK, 8 * D - 4
@@ -104,7 +104,7 @@ def row_of(told, k, p):
     return load8(told, k * CHUNK + p)
 
 
-@kernel
+@kernel(arrays=True)
 def scatter_scalar_plane(space, x, first, count, a, A, G, nodes):
     """Eight particles or more of a chunk, in a plane."""
     t = new_scalars(directions(space))
@@ -135,7 +135,7 @@ def scatter_scalar_plane(space, x, first, count, a, A, G, nodes):
     put_down(nodes, last, step, rows)
 
 
-@kernel
+@kernel(arrays=True)
 def scatter_scalar_volume(space, x, first, count, a, A, G, nodes):
     """The same in a volume."""
     t = new_scalars(directions(space))
@@ -197,7 +197,7 @@ def fitted(space, s, k, p, value, moment):
     return (4.0 / space.h) * fma(-load8(s, (k * ROWS + WITHIN) * CHUNK + p), value, moment)
 
 
-@kernel
+@kernel(arrays=True)
 def gather_scalar_plane(space, x, first, count, nodes, value, slope, grad):
     """Eight particles or more of a chunk, in a plane."""
     t = new_scalars(directions(space))
@@ -223,7 +223,7 @@ def gather_scalar_plane(space, x, first, count, nodes, value, slope, grad):
     read_out(told, value, slope, grad, count)
 
 
-@kernel
+@kernel(arrays=True)
 def gather_scalar_volume(space, x, first, count, nodes, value, slope, grad):
     """The same in a volume."""
     t = new_scalars(directions(space))
