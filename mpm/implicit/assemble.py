@@ -47,13 +47,6 @@ def turned(a, tau, h, l1, l2, axes, T, E, G):
                 G[i, n] += T[j, i] * found
 
 
-@kernel(inline=True)
-def put(band, i, j, same, value):
-    """A pair of the two different (or `same`) degrees of freedom of a particle to the lower band; where a mirror makes one unknown of two, both orders."""
-    if i >= 0:
-        band[min(i, j), abs(i - j)] += value if same or i != j else 2.0 * value
-
-
 @kernel
 def assemble(space, body, nodes, u, dt, r, band, want):
     """Sum of V0 W [J] at displacements u (A, D), inf where a particle is turned inside out; with `want` also residual r and lower band are added to."""
@@ -64,7 +57,6 @@ def assemble(space, body, nodes, u, dt, r, band, want):
     if want:
         average_stresses(spans, space, body, nodes, u, dt)
     a, tau, G, H, T, E = np.empty((3, 3)), np.empty(3), np.empty((5, 5)), np.empty(5), np.zeros((5, 5)), np.zeros((5, 5))
-    eq, B = np.empty(D * M, np.int64), np.empty((D * M, 3))
     g, wr, bulk, t, z = np.zeros((M, 2)), np.zeros(M), np.zeros((3, 3)), np.zeros((M, D)), np.zeros((M, D))
     for p in range(x.shape[0]):
         A, values, axes, elastic, W, share = answered(space, body, nodes, u, p, extra_strain(spans, p), dt, tau, a)
@@ -85,19 +77,20 @@ def assemble(space, body, nodes, u, dt, r, band, want):
         turned(a, tau, turning(elastic, share, values[0], values[1]), 1.0 + values[0], 1.0 + values[1], axes, T, E, G)
         for k in range(M):
             for e in range(D):
-                n, turn = D * k + e, sign(nodes, p, k, e)
-                eq[n] = nodes.eq[nodes.node[p, k], e]
-                B[n, 0], B[n, 1], B[n, 2] = turn * g[k, 0], turn * g[k, 1], turn * wr[k]
-        for m in range(D * M):
-            if eq[m] < 0:
-                continue
-            for i in range(5):
-                H[i] = V0[p] * (G[i, 0] * B[m, 0] + G[i, 1] * B[m, 1] + G[i, 4] * B[m, 2] if m % D == 0 else G[i, 2] * B[m, 0] + G[i, 3] * B[m, 1])
-            for n in range(m - m % D, D * M, D):
-                if n >= m:
-                    put(band, eq[n], eq[m], n == m, B[n, 0] * H[0] + B[n, 1] * H[1] + B[n, 2] * H[4])
-                if D == 2:
-                    put(band, eq[n + 1], eq[m], n + 1 == m, B[n + 1, 0] * H[2] + B[n + 1, 1] * H[3])
+                j = nodes.eq[nodes.node[p, k], e]
+                if j < 0:
+                    continue
+                factor = V0[p] * sign(nodes, p, k, e)
+                for i in range(5):
+                    H[i] = factor * (G[i, 0] * g[k, 0] + G[i, 1] * g[k, 1] + G[i, 4] * wr[k] if e == 0 else G[i, 2] * g[k, 0] + G[i, 3] * g[k, 1])
+                for m in range(M):
+                    i = nodes.eq[nodes.node[p, m], 0]
+                    if i >= j:
+                        band[j, i - j] += sign(nodes, p, m, 0) * (g[m, 0] * H[0] + g[m, 1] * H[1] + wr[m] * H[4])
+                    if D == 2:
+                        i = nodes.eq[nodes.node[p, m], 1]
+                        if i >= j:
+                            band[j, i - j] += sign(nodes, p, m, 1) * (g[m, 0] * H[2] + g[m, 1] * H[3])
         b1, b2, b3 = a[0, 0] + a[1, 0] + a[2, 0], a[0, 1] + a[1, 1] + a[2, 1], a[0, 2] + a[1, 2] + a[2, 2]
         bulk[0, 0], bulk[1, 1], bulk[2, 2] = c * c * b1 + s * s * b2, s * s * b1 + c * c * b2, b3
         bulk[0, 1] = bulk[1, 0] = c * s * (b1 - b2)
