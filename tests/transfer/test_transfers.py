@@ -214,7 +214,7 @@ def test_on_fixed_weights_the_same_sums_with_less(space, basis):
     chunk.m[:], chunk.A[:] = 0.0, 0.0
     chunk.G[..., :N] = np.random.default_rng(7).standard_normal((D, D, N))
     for one in (chunk, other):
-        lay_down(x, 0, N, one.place)
+        lay_down(space, x, 0, N, one)
     gather(space, Bspline(), x, 0, other, N, u)
     take(space, x, 0, chunk, N, u)
     nodes = np.zeros_like(u)
