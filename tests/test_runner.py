@@ -6,7 +6,6 @@ import pytest
 import mpm
 from mpm.records.variables import VARIABLES, describe
 from mpm.runner import estimate, physics, warm
-from mpm.scene.build import SceneError
 
 ALWAYS = {"heat_ledger", "heat_total", "heat_exchanged"}
 
@@ -91,13 +90,6 @@ def test_a_rigid_and_a_stopped_run(core):
     rigid = core.experiment(1, {"beta": 2.0}, drop=("elastic", "expansion", "heating"))
     assert mpm.run_point(rigid).outcome.ok
     assert mpm.run_point(cooling(core), lambda fraction, time: True).outcome.kind == "budget"
-
-
-def test_one_body_that_cannot_move_among_others_is_refused(core):
-    materials = core.config(1)["materials"] | {"stone": {"density": 1, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}}
-    bodies = core.config(1)["bodies"] | {"stone": {"shape": {"box": {"lower": [1.5], "upper": [1.75]}}, "material": "stone"}}
-    with pytest.raises(SceneError, match="stone"):
-        mpm.run_point(core.experiment(1, bodies=bodies, materials=materials))
 
 
 def test_a_run_takes_one_thread_of_blas():

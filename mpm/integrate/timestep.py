@@ -83,7 +83,7 @@ def limits(space, D, bodies, reports) -> Limits:
             R0 = float(body.particles.m[0] / body.particles.V0[0])
             kappa, alpha = conductance(body.thermal)
             J = max(float(report[SWELL]), float(body.particles.J.max()))
-            if kappa > 0:
+            if kappa > 0 and J > 0:  # of a state that is not finite J may be nothing at all: the guards name it
                 keep(heat, "conduction", CONDUCTION * R0 * alpha * h * h / (kappa * J))
                 pace = min(pace, PACE * R0 * alpha * h * h / (kappa * J))
             if isinstance(body.setting, Setting) and (fastest := float(np.max(body.setting.k))) > 0:

@@ -77,7 +77,7 @@ def test_clock():
 
 
 def test_numbers_that_are_zero_are_counted_where_nothing_is_asked_for():
-    experiment = SimpleNamespace(output=SimpleNamespace(observables=[], probes={}), grid=SimpleNamespace(dimension=2))
+    experiment = SimpleNamespace(output=SimpleNamespace(observables=[], probes={}), grid=SimpleNamespace(dimension=2), bodies=["one"])
     record = SimpleNamespace(finals={"mass_total": 2.0, "energy_kinetic": 0.0})
     assert [line.split()[-1] for line in lines(record, experiment)] == ["place:", "mass_total", "--all)"]
     assert lines(record, experiment)[-1] == "  (1 more, all 0, with --all)"

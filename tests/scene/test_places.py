@@ -29,7 +29,7 @@ REFUSED = {  # what is changed: (line, column, path, words of the message)
     "alpha": ({"alpha": MELTS}, 6, 90, "materials.solid.heat.fourier.alpha", "a number"),
     "overlap": ({"at": 0.7}, 4, 9, "bodies.two.shape", "move one of them"),
     "weld": ({"more": "contacts: [{between: [one, two], welded: {}}]"}, 9, 12, "contacts.0", "let them touch"),
-    "still": ({"of": "stone"}, 4, 3, "bodies.two", "give it one"),
+    "still": ({"at": 0.75, "of": "stone", "more": "contacts: [{between: [one, two], welded: {}}]"}, 9, 34, "contacts.0.welded", "stands still"),
     "endless": ({"end": 1e12}, 10, 8, "time.end", "at most"),
 }
 
