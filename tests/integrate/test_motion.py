@@ -75,6 +75,7 @@ def turning(core, dimension, end, step, **method):
     return core.experiment(dimension, bodies={"body": body}, surfaces=air(core), time={"end": end, "step": step}, output={"every": end}, method=method)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_one_step_of_rotation_strains_by_the_explicit_drift(core, dimension):
     """F = 1 + dt W: two principal strains grow by 1/2 ln(1 + Omega^2 dt^2) = 1/2 Omega^2 dt^2, the one along the axis by nothing."""
@@ -86,7 +87,7 @@ def test_one_step_of_rotation_strains_by_the_explicit_drift(core, dimension):
     assert np.allclose(e[:, 0], 0.0, atol=1e-14) and np.allclose(e[:, 1:], drift, rtol=1e-9)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.wide)])
 def test_rotation_keeps_temperature_and_strains_within_drift_and_centrifugal_load(core, dimension):
     """A fifth of a turn: strain within 1/2 Omega^2 dt t and rho Omega^2 R^2/mu, temperature to round-off."""
     dt, end = 0.01, 0.8
@@ -117,7 +118,7 @@ def test_adiabatic_compression(core, dimension):
 STRETCH = {1: ("uniaxial_stretch", 1), 2: ("planestrain_inplane_stretch", 2), "axisymmetric": ("free3D_J", 1), 3: ("free3D_J", 1)}
 
 
-@pytest.mark.parametrize("dimension", DIMENSIONS)
+@pytest.mark.parametrize("dimension", [pytest.param(each, marks=[] if each == 2 else pytest.mark.wide) for each in DIMENSIONS])
 def test_free_thermal_expansion(core, dimension):
     """A body that is warmer than its reference swells to its exact stretch (thermal_expansion.csv); PIC damps the ringing.
 

@@ -74,6 +74,7 @@ def test_every_array_of_particles_is_named(core):
     assert seen == {(kind, name) for kind, names in PER_PARTICLE.items() for name in names if kind is not Source}
 
 
+@pytest.mark.wide
 def test_sorted_particles_do_what_unsorted_ones_do(core, small, monkeypatch):
     made, run = core.play(scene(core), shuffled)
     taken = made.order
