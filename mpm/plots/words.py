@@ -48,7 +48,7 @@ def scale(values: Any, units: str, temperature: bool = False) -> Scale:
     top = float(finite.max()) if finite.size else 0.0
     steps = {
         "s": ((3 * 3600.0, 1 / 3600, "h"), (599.0, 1 / 60, "min"), (0.05, 1.0, "s"), (5e-5, 1e3, "ms"), (0.0, 1e6, "µs")),
-        "m": ((0.2, 1.0, "m"), (2e-4, 1e3, "mm"), (0.0, 1e6, "µm")),
+        "m": ((0.2, 1.0, "m"), (2e-4, 1e3, "mm"), (2e-7, 1e6, "µm"), (0.0, 1e9, "nm")),
         "m3": ((0.1, 1.0, "m³"), (5e-4, 1e3, "L"), (1e-7, 1e6, "cm³"), (0.0, 1e9, "mm³")),
         "Pa": ((1e6, 1e-6, "MPa"), (2e3, 1e-3, "kPa"), (0.0, 1.0, "Pa")),
     }

@@ -219,7 +219,11 @@ def test_in_a_browser(name, browser, tmp_path, monkeypatch):
         assert re.fullmatch(r"\d+ of \d+ points kept", browser.value("document.getElementById('kept').textContent"))
         browser.value("document.getElementById('clear').click()")
         assert browser.value("document.getElementById('kept').textContent") == ""
+    browser.open(path, width=794)  # pixels of an A4 page
+    browser.ask("Emulation.setEmulatedMedia", media="print")
+    assert browser.value("document.documentElement.scrollWidth") <= 794
     assert not browser.errors, browser.errors
+    browser.ask("Emulation.setEmulatedMedia", media="")
     if target := os.environ.get("SCREENSHOTS"):
         browser.screenshot(Path(target) / f"report_{name}.png")
 
