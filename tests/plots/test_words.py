@@ -23,7 +23,7 @@ def test_units(units, text):
 @pytest.mark.parametrize(
     ("top", "units", "temperature", "shown", "value"),
     [(780.0, "s", False, "min", 13.0), (100.0, "s", False, "s", 100.0), (0.02, "s", False, "ms", 20.0),
-     (0.008, "m", False, "mm", 8.0), (3.0, "m", False, "m", 3.0),
+     (0.008, "m", False, "mm", 8.0), (8e-7, "m", False, "µm", 0.8), (1.5e-9, "m", False, "nm", 1.5), (3.0, "m", False, "m", 3.0),
      (373.15, "K", True, "°C", 100.0), (2.0, "K", False, "K", 2.0), (1.2e4, "Pa", False, "kPa", 12.0), (7.0, "J", False, "J", 7.0)],
 )  # fmt: skip
 def test_scale(top, units, temperature, shown, value):
