@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 KINDS = {
     "volume": "a law of flow that keeps its volume has a large `p0`; a body that is squeezed wants a larger bulk modulus",
-    "temperature": "`method.temperature: apic`, or leave `method.bounds` at auto",
+    "temperature": "`method.temperature: apic`, or leave `method.bounds` at auto; where no body has `elastic`, `method.rigid: bounded`",
     "heat": "shorter heat steps, smaller cells, or `method.temperature: apic`",
     "energy": "smaller cells, `method.transfer` affine_flip or flip, which take less from motion than apic, or explicit steps where they are implicit",
     "inertia": "lower `time.scale`",

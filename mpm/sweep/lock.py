@@ -13,6 +13,7 @@ from typing import Any
 
 from mpm.records.provenance import now
 
+UNWRITABLE = (errno.EROFS, errno.EACCES, errno.EPERM)
 TRIES, WAIT = 10, 0.02  # somebody who only looks (`owner`) holds it for microseconds
 
 
@@ -29,7 +30,12 @@ class Lock:
         self.dead: dict | None = None
 
     def __enter__(self) -> "Lock":
-        descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError as error:
+            if error.errno not in UNWRITABLE:
+                raise
+            raise OSError(error.errno, f"{error.strerror}; choose another folder with --out", str(self.path.parent)) from None
         for left in reversed(range(TRIES)):
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -64,7 +70,7 @@ def lock_where_possible(folder: Path, **more: Any) -> Iterator[bool]:
     try:
         lock.__enter__()
     except OSError as error:
-        if error.errno not in (errno.EROFS, errno.EACCES, errno.EPERM):
+        if error.errno not in UNWRITABLE:
             raise
         if (who := owner(folder)) is not None:
             raise Refused(f"{folder} is in use by {said_owner(who)}; wait for it") from None

@@ -153,7 +153,8 @@ def test_an_empty_folder_name_is_refused(mpm, write, tmp_path):
 
 
 def test_a_finished_folder_that_cannot_be_written_is_verified_and_collected_elsewhere(mpm, write, tmp_path, monkeypatch):
-    mpm("sweep", write([0.2, 0.5]), "-o", "out", "-j", "1")
+    config = write([0.2, 0.5])
+    mpm("sweep", config, "-o", "out", "-j", "1")
     before, real = files(tmp_path / "out"), os.open
 
     def read_only(path, flags, *more, **named):
@@ -167,6 +168,8 @@ def test_a_finished_folder_that_cannot_be_written_is_verified_and_collected_else
     code, out, _ = mpm("collect", "out", "-o", "elsewhere")
     assert code == 0 and str(Path("elsewhere/sweep.nc")) in out and mpm("compare", "out", "elsewhere")[0] == 0
     assert mpm("collect", "out", "-o", "elsewhere/mine.nc")[0] == 0 and mpm("status", "out")[0] == 0
+    code, _, err = mpm("sweep", config, "-o", "out", "-j", "1")
+    assert code == 1 and err == "error: out: Read-only file system; choose another folder with --out\n"
     victim = next((tmp_path / "out").glob("points/*/*.nc"))
     victim.write_bytes(victim.read_bytes()[:-1])
     assert mpm("verify", "out")[0] == 1 and victim.exists() and {*files(tmp_path / "out")} == {*before}
