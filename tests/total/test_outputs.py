@@ -29,6 +29,8 @@ def test_fields_probes_and_one_snapshot(frame):
     assert int(tree.status) == 0 and last.attrs["time"] == 60 and list(last.component.values) == ["xx", "yy", "zz", "xy"]
     assert last.displacement.values == pytest.approx(last.position.values - last.reference_position.values, abs=1e-14)
     assert np.array_equal(first.particle, last.particle) and np.abs(first.displacement).max() < 1e-14
+    with pytest.raises(KeyError, match="a time, from 0 to 60 s, not -1"):
+        mpm.particles(tree, snapshot=-1)
     sigma = last.stress
     assert -sigma.sel(component=["xx", "yy", "zz"]).mean("component").values == pytest.approx(last.pressure.values, rel=1e-9, abs=1e-12)
     stretch = np.exp(last.strain.sel(component="yy").values)
