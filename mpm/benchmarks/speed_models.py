@@ -132,7 +132,7 @@ def loaf() -> dict:
 
 def slump() -> dict:
     """Median over runs of a small moving scene, as a worker of a sweep has them."""
-    experiment = load(load(SCENES / "slump.yaml").resolved() | {"sweep": None})
+    experiment = load(load(SCENES / "slump.yaml").resolved() | {"sweep": None, "smoke": None})
     runs = [run_point(experiment) for _ in range(1 + ROUNDS)]
     particles, steps, seconds = runs[0].facts["particles"], runs[0].steps, statistics.median(run.wall_time for run in runs[1:])
     return {"step_ns": 1e9 * seconds / particles / steps, "particles": particles, "steps": steps, "seconds": seconds}
