@@ -15,8 +15,8 @@ CELLS = {2: 1 / 96, 3: 1 / 16}
 def block(dimension: int, law: str, frame: str, end: float) -> dict[str, Any]:
     """A cube or a square of some 36 000 particles."""
     return {
-        "grid": {"dimension": dimension, "size": [1.5] * dimension, "cell": CELLS[dimension]},
-        "bodies": {"block": {"shape": {"box": {"lower": [0.25] * dimension, "upper": [1.25] * dimension}},
+        "grid": {"dimension": dimension, "size": [2.0] * dimension, "cell": CELLS[dimension]},  # room to turn: nothing touches
+        "bodies": {"block": {"shape": {"box": {"lower": [0.5] * dimension, "upper": [1.5] * dimension}},
                              "angular_velocity": [0.1, 0.2, 0.1] if dimension == 3 else 0.1, "material": "soft"}},
         "materials": {"soft": {"density": 1, "elastic": {law: {"E": 1, "nu": 0.3}}}},
         "time": {"end": end}, "output": {"every": end}, "method": {"frame": frame},
