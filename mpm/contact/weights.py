@@ -135,7 +135,7 @@ def fall_short(space, gradient, particles, b, walls, skin, box, number, short, s
             continue
         along(space, walls, home, spots)
         pulls(space, gradient, walls, home, spots, lines)
-        V = splat4(float(particles.V0[p]) * float(particles.J[p]))
+        V = splat4(np.float64(particles.V0[p]) * np.float64(particles.J[p]))
         for i in range(n0):
             first = V * load4(lines, WIDE * i)
             for j in range(n1):
