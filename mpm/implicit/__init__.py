@@ -7,8 +7,9 @@ trial     increment, strains, gradients in the moved shape
 spans     F-bar: changes of volume averaged over knot spans, where a body asks for it
 assemble  potential, residual and tangent of the particles in one and two directions
 volume    the same in three
-matrix    a band and its Cholesky factor, or blocks and conjugate gradients
+matrix    a band and its Cholesky factor, or blocks and conjugate gradients; what is skew beside it
 contact   the same of pieces of surface at contact walls and tools, with friction
+following tractions by present area, which turn and grow with the surface within the step
 free      tools that a force moves: one more unknown each
 newton    the minimisation: line search, shifts
 nozzle    nodes and particles that a nozzle moves

@@ -11,7 +11,7 @@ from mpm.implicit.trial import increment, pushed, sign, trial
 from mpm.integrate.given_source import push_at
 from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, SPEED, STRAIN, SWELL, SWELLED, WORKED
 from mpm.integrate.stress_hencky import swells
-from mpm.integrate.traction import share, turn, within
+from mpm.integrate.traction import Nominal, Present, share, turn, within
 from mpm.jit import kernel, role
 from mpm.materials import moduli, settled, tangent, warmed
 from mpm.outcome import INVERTED, OVERSTRETCHED
@@ -95,8 +95,40 @@ def push_forward(F, i, A, D):
 
 @role
 def loads(source, body, nodes, push, dt):
-    """Add tractions at the end of the step, on the surface of its start, and body forces in its middle, to the nodes' forces `push` (A, D)."""
+    """Add tractions that do not follow the surface (mpm.implicit.following), at the end of the step, and body forces in its middle, to `push` (A, D) [N]."""
     raise TypeError(f"no implicit mechanics with {type(source).__name__}")
+
+
+@role
+def still_force(area, load, p, c):
+    """Of the force of particle p what does not follow the surface [N]."""
+    raise TypeError(f"no tractions by {type(area).__name__}")
+
+
+@still_force.register(Nominal)
+def still_force_nominal(area, load, p, c):
+    return load.force[p, c]
+
+
+@still_force.register(Present)
+def still_force_present(area, load, p, c):
+    return area.still[p, c] - area.press[p, c] - area.pull[p, c] - (area.hoop[p] if c == 0 else 0.0)
+
+
+@role
+def still_moment(area, load, p, c, a):
+    """Of the moment of particle p what does not follow the surface [N m]."""
+    raise TypeError(f"no tractions by {type(area).__name__}")
+
+
+@still_moment.register(Nominal)
+def still_moment_nominal(area, load, p, c, a):
+    return load.dipole[p, c, a]
+
+
+@still_moment.register(Present)
+def still_moment_present(area, load, p, c, a):
+    return area.moment[p, c, a] - area.press_moment[p, c, a] - area.pull_moment[p, c, a]
 
 
 @loads.register(NoSource)
@@ -114,10 +146,10 @@ def loads_load(source, body, nodes, push, dt):
         now = share(source.ramp, source.t[p] + dt, 1.0)
         for k in range(nodes.w.shape[1]):
             for c in range(D):
-                force = source.force[p, c] * nodes.w[p, k]
+                force = still_force(source.area, source, p, c) * nodes.w[p, k]
                 for d in range(D):
                     for a in range(D):
-                        force += source.dipole[p, c, a] * source.F[p, d, a] * nodes.g[p, k, d]
+                        force += still_moment(source.area, source, p, c, a) * source.F[p, d, a] * nodes.g[p, k, d]
                 push[nodes.node[p, k], c] += now * sign(nodes, p, k, c) * force
 
 
@@ -210,9 +242,8 @@ def deliver(space, body, nodes, u, dt, work, report):
             return
         theta = condition(body.setting, body.thermal, p)
         thermal = thermal_stress(body.expansion, body.thermal, p, theta)
-        law = settled(body.flow, particles.J[p])
         elastic = warmed(body.elastic, theta)
-        _, pressure, part, _, _, _, lost, _ = tangent(law, elastic, trace, size, thermal, theta, dt)
+        _, pressure, part, _, _, _, lost, _ = tangent(settled(body.flow, particles.J[p]), elastic, trace, size, thermal, theta, dt)
         before = trace - math.log1p(grow)
         if lost > 0.0:
             lam, mu = moduli(elastic)

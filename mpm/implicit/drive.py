@@ -24,6 +24,7 @@ from mpm.diagnostics import kinetic
 from mpm.implicit.contact import NEAR, STIFFNESS, keep_books, may_touch
 from mpm.implicit.deliver import deliver, drag_rate, pull_nodes
 from mpm.implicit.extrapolate import everything, extrapolate
+from mpm.implicit.following import following, following_skin, laid_skin
 from mpm.implicit.free import free_tools, move_on
 from mpm.implicit.lasting import begin_step, end_step, lasting_nodes
 from mpm.implicit.newton import MOST_MOVE, Problem, solve
@@ -57,6 +58,7 @@ class Implicit:
     first: float  # step to begin with [s]
     walls: np.ndarray  # (3, 2) kinds
     lasting: Nodes | None = None  # of the reference shape, in the total frame
+    skin: tuple | None = None  # what follows its surface (mpm.implicit.following.laid_skin)
 
     def begin(self, energy: float) -> dict:
         """What a run with this energy of motion counts, and its next step: steps made again for their error (rejected) or cut (failed), sums, extrema."""
@@ -183,12 +185,17 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     how, told, body = scene.implicit, clock.told, scene.bodies[0]
     lam, mu = stiffest(body)
     if scene.references:
-        how.lasting = how.lasting or lasting_nodes(scene.space, body, scene.references[0])
-        nodes, pull, drag = begin_step(scene.space, scene.references[0], how.lasting, scene.gravity[-1], dt)
+        reference = scene.references[0]
+        if how.lasting is None:
+            how.lasting = lasting_nodes(scene.space, body, reference)
+            how.skin = laid_skin(scene.space, reference, how.lasting)
+        nodes, pull, drag = begin_step(scene.space, reference, how.lasting, scene.gravity[-1], dt)
+        follows = following_skin(scene.space, reference, how.skin, dt)
         most = math.inf  # there is no cell to leave, and nothing to meet
     else:
         nodes = new_nodes(scene.space, scene.gradient, body, how.walls, scene.gravity[-1], mu)
         pull, drag, most = np.zeros(nodes.v.shape), drag_rate(body.source, dt), MOST_MOVE * scene.space.h
+        follows = following(scene.space, body, nodes, dt)
     if not isinstance(body.source, NoSource):
         pull_nodes(body, nodes, pull, dt)
     nodes.push[:] += pull
@@ -197,12 +204,13 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
         return outcome(unforeseen[0], time=clock.time * scene.scale, step=clock.steps)
     pushed = may_touch(scene, clock, dt, STIFFNESS * (lam + 2 * mu) / scene.space.h)
     free = free_tools(scene, dt)
-    problem = Problem(scene.space, body, nodes, pushed, free, dt, drag, most)
+    problem = Problem(scene.space, body, nodes, pushed, free, dt, drag, most, follows)
     answer = solve(problem, dt * nodes.v)
     told["iterations"], told["shifts"] = told["iterations"] + answer.iterations, told["shifts"] + answer.shifts
     if answer.u is None or not move_on(scene, free, dt):
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps)
-    work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2)) + told_work(problem, answer.u)
+    followed = problem.followed(answer.u)
+    work = float(np.sum(pull * answer.u) - drag / dt * np.sum(nodes.m[:, None] * answer.u**2)) + told_work(problem, answer.u) + followed
     clock.reset()
     report = clock.reports[0]
     told["work"] += abs(keep_books(scene, nodes, pushed, answer.u, answer.depth, dt))
@@ -213,12 +221,12 @@ def mechanical_step(scene, clock, dt: float) -> Outcome:
     if dt * math.sqrt(report[SPEED]) > max(clear, SIGHT * scene.space.h):
         return outcome(NO_EQUILIBRIUM, time=clock.time * scene.scale, step=clock.steps, detail="(past what it may touch)")
     if scene.references:
-        end_step(scene.space, body, scene.references[0], nodes, answer.u, dt)
+        end_step(scene.space, body, reference, nodes, answer.u, dt)
     carry(body, dt)
     clock.gather(dt)
     if scene.course is not None:
         clock.worked += scene.course.work(scene)
-    told["work"] += abs(float(np.sum(nodes.push * answer.u)))
+    told["work"] += abs(float(np.sum(nodes.push * answer.u)) + followed)
     moving, given = 0.5 * float(np.sum(nodes.m[:, None] * (answer.u / dt) ** 2)), told["work"] + abs(clock.swelled)
     told["moved"], told["kinetic_over_work"] = max(told["moved"], moving), moving / given if given > 0 else 0.0
     told["swift"] = told["swift"] + 1 if moving > SWIFT * given and report[DISSIPATED] > 0 and rate_independent(body.flow) else 0

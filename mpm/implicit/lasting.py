@@ -13,20 +13,29 @@ import numpy as np
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.implicit.nodes import Nodes, arrange, in_order
 from mpm.implicit.spans import Spans, new_spans
-from mpm.integrate.strain import REPORT
 from mpm.integrate.traction import share, within
 from mpm.state import PAD
-from mpm.total.forces import press
 from mpm.total.reference import Skin, displacement_at, gradients_at
 from mpm.total.step import leaning, product, sampled
-from mpm.transfer import new_chunk
 
 ORDER = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # entries of a symmetric tensor
 
 
 def lasting_nodes(space, body, reference) -> Nodes:
     """Nodes of a body at its reference shape, gradients grad_X w; without velocities and forces."""
-    X, D, shape = reference.X, directions(space), extents(space)
+    X, D = reference.X, directions(space)
+    active, places = in_order(space, reference.active)
+    held = np.zeros((len(reference.m), D), bool)
+    held[reference.held[:, 0], reference.held[:, 1]] = True
+    none, on = np.zeros((len(active), D)), laid(space, reference, X)
+    spans = new_spans(body.locking, space, body.particles._replace(x=X), on[2].shape[1])
+    carried, no_ghosts = (reference.m[active], none, none), (np.zeros((0, 4), np.int64), np.zeros(0))
+    return arrange(space, places, held[active], on, carried, no_ghosts, spans)
+
+
+def laid(space, reference, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Of points X (P, D) of the reference shape: nodes of the grid (P, M), flips, weights, gradients grad_X w (P, M, D); walls are folded in."""
+    D, shape = directions(space), extents(space)
     first, w, g = sampled(space, X)
     node, lean = first[:, :, None] + np.arange(w.shape[2]), leaning(space)
     flip = np.zeros(node.shape, np.int8)
@@ -45,13 +54,7 @@ def lasting_nodes(space, body, reference) -> Nodes:
         flat = (flat[:, :, None] * shape[a] + node[:, a, None, :]).reshape(len(X), -1)
         turn = (turn[:, :, None] | flip[:, a, None, :] << a).reshape(len(X), -1)
     gradient = np.stack([product(np.where(np.arange(D)[None, :, None] == a, g, w)) for a in range(D)], axis=2)
-    active, places = in_order(space, reference.active)
-    held = np.zeros((len(reference.m), D), bool)
-    held[reference.held[:, 0], reference.held[:, 1]] = True
-    weights, none = product(w), np.zeros((len(active), D))
-    spans = new_spans(body.locking, space, body.particles._replace(x=X), weights.shape[1])
-    carried, no_ghosts = (reference.m[active], none, none), (np.zeros((0, 4), np.int64), np.zeros(0))
-    return arrange(space, places, held[active], (flat, turn, weights, gradient), carried, no_ghosts, spans)
+    return flat, turn, product(w), gradient
 
 
 def home(space, nodes: Nodes) -> np.ndarray:
@@ -60,17 +63,16 @@ def home(space, nodes: Nodes) -> np.ndarray:
 
 
 def begin_step(space, reference, lasting: Nodes, gravity: np.ndarray, dt: float) -> tuple[Nodes, np.ndarray, float]:
-    """(nodes of a step of dt, forces of tractions at its end, on the areas of its start (A, D) [N], rate of drag in its middle [1/s])."""
+    """(nodes of a step of dt, forces of tractions by reference area at its end (A, D) [N], rate of drag in its middle [1/s])."""
     D, at = directions(space), home(space, lasting)
     H, _ = gradients_at(space, reference, reference.X)
     g = np.einsum("pke,ped->pkd", lasting.g, np.linalg.inv(np.eye(D) + H))
     push = reference.m[:, None] * gravity
     push[reference.near] *= 1.0 - reference.less
     v, t, pull = np.where(lasting.eq >= 0, reference.v[at, :D], 0.0), reference.t[0], np.zeros((len(at), D))
-    if isinstance(reference.skin, Skin):  # as areas are now: pairs of steps make it of order 2, and at rest nothing is behind
-        press(reference.skin, space, reference, new_chunk(D, reference.f, True, False), 0.0, np.zeros(REPORT))
-    if len(reference.load):
-        pull += share(reference.ramp, t + dt, 1.0) * reference.load[at, :D]
+    still = reference.skin.still if isinstance(reference.skin, Skin) else reference.load
+    if len(still):
+        pull += share(reference.ramp, t + dt, 1.0) * still[at, :D]
     return lasting._replace(g=g, v=v, push=push[at]), pull, reference.drag * within(reference.ramp, t + 0.5 * dt, 0.0)
 
 

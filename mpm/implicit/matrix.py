@@ -16,6 +16,7 @@ from mpm.boundary import directions
 from mpm.jit import kernel, role
 
 RESIDUAL, MOST_PRODUCTS = 1e-7, 5000  # of the residual in the norm of the inverse blocks; products
+TWISTED, ROUNDED, MOST_TWISTS = 1e-3, 1e-10, 50  # of the residual in the norm of K^-1; of its size; solutions with K
 FAR, WIDE = 3, 7  # nodes aside: what particles and ghosts reach; 2 FAR + 1
 
 
@@ -95,25 +96,66 @@ def add_diagonal(matrix, nodes, value: np.ndarray) -> None:
         own[:, np.arange(3), np.arange(3)] += value
 
 
-def inverted(matrix, nodes, r: np.ndarray, shift: float) -> np.ndarray | None:
-    """-K^-1 r (R, A, D) of R right sides, with `shift` of its diagonal added to K, which is spent; None where it is not positive."""
-    step = np.zeros(r.shape)
+def diagonal(matrix, nodes) -> np.ndarray:
+    """|K_ii| (A, D), 0 where a wall holds."""
     if isinstance(matrix, Blocks):
         own = matrix.values[:, matrix.slot[(FAR * WIDE + FAR) * WIDE + FAR]]
-        matrix.shift[:] = shift * np.abs(own[:, np.arange(3), np.arange(3)])
+        return np.abs(own[:, np.arange(3), np.arange(3)]) * matrix.free
+    free = nodes.eq >= 0
+    found = np.zeros(free.shape)
+    found[free] = np.abs(matrix.values[nodes.eq[free], 0])
+    return found
+
+
+def solver(matrix, nodes, shift: np.ndarray):
+    """right (R, A, D) -> K^-1 right of R right sides, with `shift` (A, D) added to K's diagonal, which is spent; None where it is not positive."""
+    if isinstance(matrix, Blocks):
+        own = matrix.values[:, matrix.slot[(FAR * WIDE + FAR) * WIDE + FAR]]
+        matrix.shift[:] = shift
         blocks = inverse(own, matrix)
-        done = [conjugate(matrix, -right * matrix.free, blocks, out) for right, out in zip(r, step, strict=True)]
-        return step if min(done) >= 0 and np.isfinite(step).all() else None
+
+        def by_gradients(right):
+            out = np.zeros(right.shape)
+            done = [conjugate(matrix, one * matrix.free, blocks, found) for one, found in zip(right, out, strict=True)]
+            return out if min(done) >= 0 and np.isfinite(out).all() else None
+
+        return by_gradients
     free, band = nodes.eq >= 0, matrix.values
-    band[:, 0] += shift * np.abs(band[:, 0])
+    band[nodes.eq[free], 0] += shift[free]
     factor, info = dpbtrf(band.T, lower=1, overwrite_ab=1)
-    if info != 0:
-        return None
-    right = np.empty((nodes.unknowns, len(r)), order="F")
-    right[nodes.eq[free]] = -r[:, free].T
-    found, _ = dpbtrs(factor, right, lower=1)
-    step[:, free] = found[nodes.eq[free]].T
-    return step if np.isfinite(found).all() else None
+
+    def by_factor(right):
+        columns, out = np.empty((nodes.unknowns, len(right)), order="F"), np.zeros(right.shape)
+        columns[nodes.eq[free]] = right[:, free].T
+        found, _ = dpbtrs(factor, columns, lower=1)
+        out[:, free] = found[nodes.eq[free]].T
+        return out if np.isfinite(found).all() else None
+
+    return by_factor if info == 0 else None
+
+
+def untwisted(solve, twist, right: np.ndarray) -> np.ndarray | None:
+    """(K + S)^-1 right (A, D) of a skew S, twist(x) = S x, by solutions with K to TWISTED of the first (O. Widlund, SIAM J. Numer. Anal. 15 (1978) 801)."""
+    x, old, past, share = *np.zeros((3, *right.shape)), 1.0
+    Ax, first, size = past.copy(), 0.0, 0.0
+    for count in range(MOST_TWISTS):
+        left = right - Ax
+        v = solve(left[None])
+        if v is None:
+            return None
+        last, size = size, float(np.sum(v[0] * left))
+        if size <= TWISTED * TWISTED * first:
+            break
+        if count == 0:
+            first = size
+        else:
+            share = 1.0 / (1.0 + size / (last * share))
+        Av = left + twist(v[0])
+        x, old = old + share * (v[0] + x - old), x
+        Ax, past = past + share * (Av + Ax - past), Ax
+        if count == 0 and np.sum((Av - left) ** 2) <= ROUNDED * ROUNDED * np.sum(left * left):  # nothing is twisted
+            break
+    return x
 
 
 def inverse(own: np.ndarray, blocks: Blocks) -> np.ndarray:

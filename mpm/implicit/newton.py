@@ -2,7 +2,9 @@
 
     Pi(u) = sum V0 W - sum f.u + sum m |u - dt v|^2/(2 dt^2) + rate sum m |u|^2/(2 dt) + ghost penalty + walls
 The part of the particles is convex in the trial strain, not in u (large rotations and stresses may tip a tangent): then a share of the diagonal is added.
-A step is done where particles move by less than CLOSE cells of one full Newton step, or where the square of that move says that the next will (quadratic).
+Forces that follow a surface need not have a potential: Pi takes what they work along the last move, by the mean of the forces at both of its ends.
+A step is done where particles move by less than CLOSE cells of one full Newton step, or where the square of that move says that the next will (quadratic;
+where forces follow a surface, that move times its ratio to the move before).
 """
 
 import math
@@ -12,8 +14,9 @@ import numpy as np
 
 from mpm.implicit.assemble import assemble
 from mpm.implicit.contact import CLOSER, push_back
+from mpm.implicit.following import Following, follow, stiffen, twist
 from mpm.implicit.free import Free, couple, settle
-from mpm.implicit.matrix import Band, add_diagonal, inverted, new_matrix
+from mpm.implicit.matrix import Band, add_diagonal, diagonal, new_matrix, solver, untwisted
 from mpm.implicit.nodes import third_differences
 from mpm.implicit.volume import assemble_volume
 
@@ -44,9 +47,14 @@ class Problem:
     dt: float
     drag: float
     most: float = math.inf  # that a particle may move in one iteration [m]
+    following: Following | None = None
+    begun: tuple = ()  # where the last gradient was asked for, and the forces there that follow the surface
 
     def potential(self, u: np.ndarray, r: np.ndarray, matrix, depth: np.ndarray, want: bool) -> float:
-        """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (mpm.implicit.matrix)."""
+        """Pi(u) [J], inf where a particle is turned inside out; with `want` also its gradient r (A, D) and Hessian (mpm.implicit.matrix).
+
+        What follows the surface counts from the last u that was asked for with `want`.
+        """
         nodes, dt = self.nodes, self.dt
         if want:
             r[:], matrix.values[:] = 0.0, 0.0
@@ -56,6 +64,15 @@ class Problem:
             total = assemble_volume(self.space, self.body, nodes, u, dt, r, matrix, want)
         if not math.isfinite(total):
             return math.inf
+        if self.following is not None:
+            pull = np.zeros(u.shape)
+            if not follow(self.following, u, pull):
+                return math.inf
+            if want:
+                stiffen(self.following, nodes, matrix)
+                self.begun = u.copy(), pull
+                r -= pull
+            total -= self.worked(u, pull)
         total += third_differences(nodes, u, r, matrix, want)
         if len(self.free.d):
             total += settle(nodes, self.pushed, self.free, u, dt)
@@ -66,6 +83,19 @@ class Problem:
             r += inert * late + slow * u - nodes.push
             add_diagonal(matrix, nodes, np.broadcast_to(inert + slow, u.shape))
         return total
+
+    def worked(self, u: np.ndarray, pull: np.ndarray) -> float:
+        """Of forces that follow the surface, `pull` at u, on the way from where the last gradient was asked for [J]."""
+        return float(0.5 * np.sum((self.begun[1] + pull) * (u - self.begun[0])))
+
+    def followed(self, u: np.ndarray) -> float:
+        """What they work in the whole step [J]."""
+        if self.following is None:
+            return 0.0
+        first, last = np.zeros(u.shape), np.zeros(u.shape)
+        follow(self.following, np.zeros(u.shape), first)
+        follow(self.following, u, last)
+        return float(0.5 * np.sum((first + last) * u))
 
     def move(self, step: np.ndarray) -> float:
         """The largest move of a particle [m]: at most that of its heaviest node, weighted."""
@@ -96,7 +126,7 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
     nodes, h = problem.nodes, problem.space.h
     free, r, matrix = nodes.eq >= 0, np.empty(guess.shape), new_matrix(problem.space, nodes)
     depth = np.zeros(len(problem.pushed.owner))
-    u, shifts = guess.copy(), 0
+    u, shifts, last = guess.copy(), 0, h
     if not nodes.unknowns:  # all of it is in its nozzle
         return Answer(u, 0, 0, depth)
     Pi = problem.potential(u, r, matrix, depth, True)
@@ -123,8 +153,9 @@ def minimise(problem: Problem, guess: np.ndarray) -> Answer:
         if not math.isfinite(new):
             return Answer(None, count, shifts, depth)
         u += share * step
-        if small or (count > 1 and share == 1.0 and not tried and full * full / h < SQUARE * h):
+        if small or (count > 1 and share == 1.0 and not tried and full * full / last < SQUARE * h):
             return Answer(u, count, shifts, depth)
+        last = h if problem.following is None else full
         Pi = problem.potential(u, r, matrix, depth, True)
     return Answer(None, ITERATIONS, shifts, depth)
 
@@ -138,11 +169,33 @@ def newton_step(problem: Problem, u, r, matrix, depth) -> tuple[np.ndarray | Non
         c, k = np.empty((Q, *u.shape)), np.empty(Q)
         if Q:
             couple(problem.nodes, problem.pushed, problem.free, u, problem.dt, c, k)
-        found = inverted(matrix, problem.nodes, np.concatenate([r[None], c]), shift)
+        found = solved(problem, solver(matrix, problem.nodes, shift * shares(problem, matrix)), -np.concatenate([r[None], c]))
         if found is None:
             continue
         step, rest = found[0], np.diag(k) + np.einsum("qnc,pnc->qp", c, found[1:])  # k - c K^-1 c
-        if Q and np.linalg.eigvalsh(rest)[0] <= 0.0:
+        if Q and np.linalg.eigvalsh(rest + rest.T)[0] <= 0.0:
             continue
         return step - np.einsum("q,qnc->nc", np.linalg.solve(rest, np.einsum("qnc,nc->q", c, step)), found[1:]) if Q else step, tried
     return None, SHIFTS
+
+
+def shares(problem: Problem, matrix) -> np.ndarray:
+    """What a shift of 1 adds to the diagonal (A, D): as much again; where forces follow a surface as much by mass, which moves no body as a whole."""
+    size, m = diagonal(matrix, problem.nodes), problem.nodes.m[:, None]
+    free = problem.nodes.eq >= 0
+    return size if problem.following is None else np.median((size / m)[free]) * m * free
+
+
+def solved(problem: Problem, solve, right: np.ndarray) -> np.ndarray | None:
+    """K^-1 right (R, A, D) by the solver of K's symmetric part, with what of it is skew, too."""
+    if solve is None or problem.following is None:
+        return None if solve is None else solve(right)
+    free = problem.nodes.eq >= 0
+
+    def turned(x):
+        out = np.zeros(x.shape)
+        twist(problem.following, x, out)
+        return out * free
+
+    found = [untwisted(solve, turned, one * free) for one in right]
+    return None if any(one is None for one in found) else np.stack(found)
