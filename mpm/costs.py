@@ -107,10 +107,12 @@ def bytes_particle(experiment) -> int:
 
 
 def bytes_node(experiment) -> int:
-    """Of the nodes that bodies reach: two buffers of momentum and mass, or displacement, velocity, force, mass their numbers; the fields of a heat step."""
+    """Of the nodes that bodies reach: two buffers of momentum and mass, or in the total frame displacement, velocity, momentum, force, mass, shares of
+    neighbours, numbers; the fields of a heat step."""
     real = 4 if experiment.method.precision == "float32" else 8
     warm = any(material.heat is not None for material in experiment.materials.values())
-    return (13 * real + 16 if experiment.method.frame == "total" else 2 * 4 * real) + (7 * 8 if warm else 0)
+    total = (18 + 2 * experiment.grid.directions) * real + 16
+    return (total if experiment.method.frame == "total" else 2 * 4 * real) + (7 * 8 if warm else 0)
 
 
 def memory_at_most(experiment) -> int:

@@ -22,6 +22,7 @@ from mpm.scene.sources import sourced
 from mpm.scene.traction import one_course
 from mpm.state import PAD, Axisymmetric, Body, Heating, Isothermal, NoExchange, NoExpansion, NoHeating, NoSource, Particles, Ramp, Surface, Thermal, Within
 from mpm.total.heat import NoWarmth, Warmth
+from mpm.total.inertia import spreading
 from mpm.total.reference import Reference, Skin, Still, new_nodes
 from mpm.total.step import courant_of, leaning
 from mpm.transfer import columns
@@ -114,9 +115,13 @@ def reference_of(experiment, name: str, space, body, surface, lower, upper) -> R
     X = particles.x.copy()
     plastic = np.zeros((len(X) if not isinstance(body.flow, NoFlow) else 0, particles.B.shape[1]), dtype)
     courant = courant_of(space, X.astype(float), particles.V0.astype(float), walls, *stiffest(body))
-    m, sign, lean, less = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign, lean, less))
-    return Reference(X, plastic, *new_nodes(n, D, dtype), m, load, touched, active, ghost, image, sign, wall, lean, near, less, held, walls, np.zeros(1),
-                     ramp, drag, courant, warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
+    moved = spreading(space, m, active, walls)
+    u, v, p, f = new_nodes(n, D, dtype)
+    if experiment.method.mechanics == "implicit":
+        p, moved = p[:0], (moved[0][:0], moved[1])
+    m, sign, lean, less, spread = (np.ascontiguousarray(a, dtype=dtype) for a in (m, sign, lean, less, moved[0]))
+    return Reference(X, plastic, u, v, p, f, m, load, touched, active, ghost, image, sign, wall, lean, near, less, held, walls, np.zeros(1),
+                     ramp, drag, courant, spread, moved[1], warmth_of(space, body, walls, experiment.grid.size), skin)  # fmt: skip
 
 
 def folded(nodes: np.ndarray, ghost, image, sign, wall, lean) -> np.ndarray:

@@ -8,6 +8,7 @@ from mpm.integrate.timestep import WAVE, Limits, limits, mechanical_limits
 from mpm.outcome import COMPLETED, HEAT_SOLVER, Outcome, outcome
 from mpm.state import Average, Thermal
 from mpm.total.heat import begin_heat, warm
+from mpm.total.inertia import impel
 from mpm.total.reference import project, show
 from mpm.total.step import advance_total
 
@@ -17,6 +18,8 @@ PACE = 4.0  # times the updated frame's: here nothing damps by the step. manufac
 def begin(space, body, reference) -> None:
     """Nodes from what the particles of a body are given at the start."""
     project(space, reference, body.particles)
+    if len(reference.p):
+        impel(reference)
     if isinstance(body.locking, Average):
         nodal(space, reference.X.astype(float), body.particles.V0.astype(float), body.locking.volume)
         for ghost, image, lean in zip(reference.ghost, reference.image, reference.lean, strict=True):

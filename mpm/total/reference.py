@@ -39,6 +39,7 @@ class Reference(NamedTuple):
     plastic: np.ndarray  # (N, K) inverse plastic metric F_p^-1 F_p^-T less the identity; (0, K) where nothing flows [-]
     u: np.ndarray  # (n, columns(D)) displacement [m]; further columns unused
     v: np.ndarray  # (n, columns(D)) velocity [m/s]
+    p: np.ndarray  # (n, columns(D)) momentum, over m [m/s]: mpm.total.inertia; (0, columns(D)) in implicit mechanics, where v is that
     f: np.ndarray  # (n, columns(D)) scratch of one step: force of the stress [N]
     m: np.ndarray  # (n,) mass [kg], those of ghosts on their images
     load: np.ndarray  # (n, D), or (n, columns(D)) by present area: force of the tractions at full load [N]; (0, D) without
@@ -57,6 +58,8 @@ class Reference(NamedTuple):
     ramp: Any  # mpm.state.Ramp or Within, of load and drag
     drag: float  # rate of the drag [1/s]
     courant: float  # largest stable step in h sqrt(R0/(D lam + 2 mu)), at rest
+    spread: np.ndarray  # (n, 1 + 2 D), (0, 1 + 2 D) in implicit mechanics: how p makes v (mpm.total.inertia)
+    beside: np.ndarray  # (2 D,) from the number of a node to those of its neighbours
     warmth: Any  # mpm.total.heat.Warmth or NoWarmth
     skin: Any = Still()  # or Skin
 
@@ -181,11 +184,11 @@ def sample(space, nodes, x, value, gradient):
 
 
 def kinetic(reference) -> float:
-    """1/2 sum m_i v_i^2 [J]."""
-    D, n = reference.X.shape[1], reference.active
-    return float(0.5 * np.sum(reference.m[n, None].astype(float) * reference.v[n, :D].astype(float) ** 2))
+    """1/2 sum m_i p_i.v_i [J]."""
+    D, n, p = reference.X.shape[1], reference.active, reference.p if len(reference.p) else reference.v
+    return float(0.5 * np.sum(reference.m[n, None].astype(float) * p[n, :D].astype(float) * reference.v[n, :D].astype(float)))
 
 
 def new_nodes(n: int, D: int, dtype) -> tuple[np.ndarray, ...]:
-    """Displacement, velocity and force of n nodes."""
-    return tuple(aligned((n, columns(D)), dtype) for _ in range(3))
+    """Displacement, velocity, momentum and force of n nodes."""
+    return tuple(aligned((n, columns(D)), dtype) for _ in range(4))

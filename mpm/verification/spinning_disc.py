@@ -5,8 +5,8 @@ u = k r [R^2 (3 M + lam)/(M + lam) - r^2] - sum_n b_n J1(z_n r/R) cos(z_n c t/R)
 b_n = 16 k R^3 J2(z)/(z^3 [J1'(z)^2 + (1 - 1/z^2) J1(z)^2]) (at rest: Timoshenko & Goodier, Theory of Elasticity, 3rd ed. 1970, section 32, in plane strain).
 Compared is what does not depend on how far the disc has turned: distances from its centre, and stress along and across the radius where a particle is now.
 For small strains, which are of the order of k R^2: a disc that widens turns the more slowly, and that is left out.
-Order   1.9 in the cell in both frames; stress 1.6 in the total one, 1.0 in the updated one: the wave that starts at the rim has a kink, and with masses that
-are row sums short waves are late (docs/physics.md 14; tests/verification/test_spinning_disc.py)
+Order   1.9 in the cell in both frames; stress 1.3 in the total one (0.1 % with 41 cells a radius), 1.0 in the updated one: the wave that starts at the rim has
+a kink, and short waves are late, by far the most with masses that are row sums (docs/physics.md 14; tests/verification/test_spinning_disc.py)
 """
 
 import functools

@@ -15,6 +15,7 @@ from mpm.scene.framing import choice
 from mpm.scene.over import go_over
 from mpm.simulation import simulate
 from mpm.total.drive import show_all
+from mpm.total.inertia import impel
 from mpm.total.step import force_all
 from mpm.transfer import new_chunk
 
@@ -137,6 +138,7 @@ def test_a_strain_past_ln_2_is_outgrown():
         scene.moderate, scene.over = np.log(2.0), over
         reference, h = scene.references[0], scene.space.h
         reference.v[:, 0] = (np.arange(len(reference.v)) - 2) * h - 2.0
+        impel(reference)
         return simulate(scene)
 
     run = stretched()

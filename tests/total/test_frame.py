@@ -12,6 +12,7 @@ from mpm.error import kirchhoff
 from mpm.scene.build import build
 from mpm.scene.point import run_zero
 from mpm.scene.refusal import SceneError
+from mpm.total.inertia import impel
 from mpm.total.reference import displacement_at
 
 SOFT = {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}
@@ -137,6 +138,7 @@ def test_energy_of_a_free_vibration(core):
         reference, h = scene.references[0], scene.space.h
         x = (np.arange(len(reference.v)) // scene.space.n1 - 2) * h
         reference.v[:, 0] = np.where(np.isin(np.arange(len(x)), reference.active), 0.002 * np.sin(0.5 * np.pi * x), 0.0)
+        impel(reference)
 
     _, run = core.play(experiment, ring)
     total = run.series["energy_total"]
@@ -165,6 +167,7 @@ def test_flow_is_that_of_a_material_point(core, dimension, form):
         reference, shape = scene.references[0], [n for n in (scene.space.n0, getattr(scene.space, "n1", 1), getattr(scene.space, "n2", 1)) if n > 1]
         nodes = (np.stack(np.unravel_index(reference.active, shape), axis=-1) - 2) * scene.space.h - (0.0 if dimension == "axisymmetric" else 1.0)
         reference.v[reference.active, :D] = nodes @ pull.T
+        impel(reference)
 
     end, run = core.play(mpm.load(data), throw)
     third = dict(zip(("xx", "yy", "zz"), (*rates, rates[0]) if dimension == "axisymmetric" else rates, strict=False))
