@@ -13,7 +13,7 @@ Errors  of the sum over neighbours, of order h where m changes from node to node
 
 import numpy as np
 
-from mpm.boundary import CONTACT, SLIP, STICK, directions, extents
+from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.jit import kernel
 from mpm.state import PAD, Cubic
 from mpm.total.reference import hold
@@ -25,18 +25,19 @@ def spreading(space, m: np.ndarray, active: np.ndarray, walls: np.ndarray) -> tu
     """(spread (n, 1 + 2 D): sum of b_ij/m_i, and each b_ij/m_i or 0 for a j that counts as 0; beside (2 D,): from a node's number to its neighbours')."""
     D, shape = directions(space), np.array(extents(space)[: directions(space)])
     variance, strides = 1 / 3 if isinstance(space.basis, Cubic) else 1 / 4, np.append(np.cumprod(shape[:0:-1])[::-1], 1)
-    place = np.stack(np.unravel_index(np.arange(len(m)), shape), axis=-1)
-    there, stuck, weight = np.zeros(len(m), bool), np.zeros(len(m), bool), np.repeat(m[:, None], D, axis=1)
+    spread, beside = np.zeros((len(m), 1 + 2 * D)), np.stack([-strides, strides], axis=-1).ravel()
+    place, there, stuck, across = np.unravel_index(active, shape), np.zeros(len(m), bool), np.zeros(len(m), bool), [m.copy() for _ in range(D)]
     there[active] = True
     for axis, side in np.argwhere(walls[:D] < CONTACT):
-        on = place[:, axis] == (PAD if side == 0 else shape[axis] - 1 - PAD)
-        stuck |= on & (walls[axis, side] == STICK)
-        weight[on & (walls[axis, side] == SLIP), axis] *= 2
-    spread, beside = np.zeros((len(m), 1 + 2 * D)), np.stack([-strides, strides], axis=-1).ravel()
+        on = active[place[axis] == (PAD if side == 0 else shape[axis] - 1 - PAD)]
+        if walls[axis, side] == STICK:
+            stuck[on] = True
+        else:
+            across[axis][on] *= 2
     for k, by in enumerate(beside):
         i = active[there[active + by] & ~stuck[active]]
-        j = i + by
-        b = variance * np.minimum(weight[i, k // 2], weight[j, k // 2]) / m[i]
+        j, weight = i + by, across[k // 2]
+        b = variance * np.minimum(weight[i], weight[j]) / m[i]
         spread[i, 0] += b
         spread[i, 1 + k] = np.where(stuck[j], 0.0, b)
     return spread, beside
