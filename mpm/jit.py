@@ -25,7 +25,7 @@ FLAGS = {"fastmath": {"contract", "arcp", "nsz", "afn"}, "error_model": "numpy",
 # For functions that run inside another's loop: LLVM puts them in place, and no array's reference count is touched (an atomic operation each, and a
 # tuple of arrays has as many as it has fields). So they cannot make arrays, and must not return any.
 INLINE = {"forceinline": True, "_nrt": False}
-ARRAYS = {"_nrt": True}  # for functions that make arrays and are called from INLINE ones, which else hand down that there are none
+ARRAYS = {"forceinline": False, "_nrt": True}  # for functions that make arrays and are called from INLINE ones, which else hand down that there are none
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled code calls it: a wrapper for a tuple of arrays is most of the compiling
 
 CACHE = cache.kernels()

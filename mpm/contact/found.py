@@ -50,7 +50,9 @@ def put(found, i, piece, against, gap, mu, who, where, balanced):
     (b, owner), (home, point) = who, where
     found.piece[i], found.against[i], found.gap[i], found.mu[i] = piece, against, gap, mu
     found.body[i, 0], found.body[i, 1], found.owner[i, 0], found.balanced[i, 0], found.balanced[i, 1] = b, -1, owner, balanced, 0
-    found.home[i, 0], found.point[i, 0], found.given[i], found.free[i] = home, point, 0.0, -1
+    found.free[i] = -1
+    for a in range(len(home)):  # numpy's own way to fill a row compiles the words of its errors
+        found.home[i, 0, a], found.point[i, 0, a], found.given[i, a] = home[a], point[a], 0.0
 
 
 @kernel(inline=True)

@@ -12,6 +12,7 @@ import numpy as np
 from mpm.boundary import directions, extents
 from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
+from mpm.contact.pairs import Pairs
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.spots import seen
 from mpm.contact.tools import NoTools
@@ -36,7 +37,7 @@ def find_links(space, bodies, touching, walls, conductance, dt):
     D, skin = directions(space), new_skin(directions(space), touching.first)
     M = seen(space) ** D
     lay_skins(space, bodies, skin)
-    contacts, count = find_all(space, bodies, skin, np.full_like(touching.stops, -1.0), conductance - 1e-300, NoTools(), touching.room, NEAR)
+    contacts, count = find_all(space, bodies, skin, np.full_like(touching.stops, -1.0), Pairs(conductance - 1e-300), NoTools(), touching.room, NEAR)
     links = Links(np.empty((count, 2), np.int64), np.empty(count), np.empty((count, 2, M), np.int64), np.empty((count, 2, M)))
     L, at, w, g, d = 0, np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros((D, M))
     shape = extents(space)

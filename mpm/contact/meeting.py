@@ -13,6 +13,7 @@ from mpm.contact.drive import Drive
 from mpm.contact.found import BODY
 from mpm.contact.held import Held, NotHeld
 from mpm.contact.links import PERFECT, find_links
+from mpm.contact.pairs import NoPairs, Pairs
 from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
 from mpm.contact.step import Pace, Touching, advance_touching
@@ -68,8 +69,9 @@ class Meeting:
         R, P, F = max(int(met.sum()), 1), int(first[-1]), int(self.fields.max()) + 1
         walls = np.stack([self.walls[self.fields == f].min(axis=0) for f in range(F)])  # a group is a mirror's where one of it is
         tools, K = NoTools() if self.drive is None else self.drive.tools, BODY + B + T
+        pairs = Pairs(self.pairs) if B > 1 else NoPairs()
         held = Held(np.array([self.held[self.fields == f].all() for f in range(F)])) if self.stands else NotHeld()
-        self.touching = Touching(first, self.fields, walls, self.stops, self.pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
+        self.touching = Touching(first, self.fields, walls, self.stops, pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
                                  np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
                                  np.array([P // 4 + 64]), held)  # fmt: skip
         self.passed, self.passing, self.hardest, self.grown = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2)), np.zeros((B, B))

@@ -34,7 +34,7 @@ class Touching(NamedTuple):
     fields: np.ndarray  # (B,) velocity field of each body
     walls: np.ndarray  # (F, 3, 2) kinds of walls for each field: mirrors for those that started at them
     stops: np.ndarray  # (B, 3, 2) friction of the walls that a body meets, negative for others
-    pairs: np.ndarray  # (B, B) friction of the bodies that a body meets, negative for others
+    pairs: Any  # Pairs or NoPairs
     tools: Any  # Tools or NoTools
     rows: np.ndarray  # (K,) where an obstacle is kept below
     warm: np.ndarray  # (P, R, D) impulses of the last step [kg m/s]

@@ -169,8 +169,9 @@ def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
     D, M, out, (lack, T) = directions(space), len(at), -1.0 if k == 0 else 1.0, short
     system[:] = 0.0
     system[0, D + 1] = 1.0
-    shift = (contacts.point[i, k] - contacts.home[i, k]) / space.h
-    before, y = W.copy(), np.empty(D + 1)
+    shift, before, y = np.empty(D), W.copy(), np.empty(D + 1)
+    for a in range(D):
+        shift[a] = (contacts.point[i, k, a] - contacts.home[i, k, a]) / space.h
     for m in range(M):
         n = number[at[m]]
         borne = 0.0
@@ -191,7 +192,8 @@ def balance(space, contacts, i, k, nodes, number, spots, short, system, W):
         for c in range(D + 1):
             system[r, c] /= max(scale, 1e-300)
     if not eliminate(system):
-        W[:] = before
+        for m in range(M):  # numpy's own way compiles the words of its errors
+            W[m] = before[m]
         return
     for m in range(M):
         terms(way, shift, space.h, m, y)

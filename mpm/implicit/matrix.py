@@ -190,10 +190,9 @@ def product(blocks, x, out):
 def conjugate(blocks, right, inverse, x):
     """x (A, D) <- K^-1 right from x = 0; how many products it took, -1 where K does not rise along a direction or they do not suffice."""
     A = x.shape[0]
-    r, z, p, q = right.copy(), np.empty(x.shape), np.empty(x.shape), np.empty(x.shape)
+    r, z, q = right.copy(), np.empty(x.shape), np.empty(x.shape)
     first = weigh(inverse, r, z)
-    rho, aim = first, RESIDUAL * RESIDUAL * first
-    p[:] = z
+    rho, aim, p = first, RESIDUAL * RESIDUAL * first, z.copy()
     for count in range(MOST_PRODUCTS):
         if rho <= aim:
             return count

@@ -70,7 +70,7 @@ def newton(space, x, alpha, flux, on, taken, total, dt, tolerance, scratch):
     """u with E(u) = total + dt f(theta + u), from the guess in `taken`; iterations of conjugate gradients, at least one a Newton step, or -1."""
     K, count = len(on.each), 0
     change, held, slope = taken.change, taken.held, taken.slope
-    short, step, before, was, linear = np.empty(K), np.empty(K), np.empty(K), np.empty(K), np.empty(K)
+    short, step = np.empty(K), np.empty(K)
     contents(alpha, on.pairs, change, np.full(K, True), held, slope)
     size = miss(space, x, flux, on, taken, total, dt, scratch, short)
     spread(on.each, slope, scratch.diagonal)
@@ -80,16 +80,17 @@ def newton(space, x, alpha, flux, on, taken, total, dt, tolerance, scratch):
         moved = np.sum(held * held / on.weight)
         if size <= tolerance * tolerance * moved or size == 0.0:
             return count
-        rows[:, 0] = others + slope
+        for k in range(K):  # numpy's own way to fill an array compiles the words of its errors
+            rows[k, 0] = others[k] + slope[k]
         done = conjugate_gradients(Rows(rows), columns, between, slope, -short, step, max(tolerance, INNER))
         if done < 0:
             return -1
         count += max(done, 1)
-        before[:], was[:] = change, held
+        before, was, linear = change.copy(), held.copy(), slope * step
         share, better = 1.0, False
-        linear[:] = slope * step
         for _ in range(HALVINGS):
-            change[:] = before + share * step
+            for k in range(K):
+                change[k] = before[k] + share * step[k]
             if not settle(alpha, on.pairs, on.close, was + share * linear, change, held, slope):
                 return -1
             new = miss(space, x, flux, on, taken, total, dt, scratch, short)

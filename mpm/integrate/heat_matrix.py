@@ -173,8 +173,9 @@ def matrix(space, shape, x, flow, pieces, met, capacity, each, dt, walls):
 def incomplete(rows, columns, between, shift, factor):
     """The factor, of rows whose diagonal is raised by `shift`; false where a pivot is not positive."""
     K, m = rows.shape
-    factor[:] = rows
-    for j in range(K):
+    for j in range(K):  # numpy's own way to fill an array compiles the words of its errors
+        for o in range(m):
+            factor[j, o] = rows[j, o]
         factor[j, 0] *= 1.0 + shift
     for j in range(K):
         if not factor[j, 0] > 0.0:
@@ -268,7 +269,8 @@ def conjugate_gradients(operator, columns, between, weight, r, change, tolerance
     before = 1.0
     for count in range(MOST_ITERATIONS):
         size, moved, rho = 0.0, 0.0, 0.0
-        z[:] = r
+        for k in range(K):
+            z[k] = r[k]
         smooth(factor, columns, z)
         for k in range(K):
             size += r[k] * r[k] / weight[k]

@@ -47,7 +47,8 @@ def stages(problem, solver, tableau, filters, slack, dt, u, around, k, flux):
     n, m = len(u), len(a)
     y, work = np.empty(n), np.empty(n)
     for i in range(m):
-        y[:] = u
+        for p in range(n):  # numpy's own way to fill an array compiles the words of its errors
+            y[p] = u[p]
         for j in range(i):
             f = dt * a[i, j]
             for p in range(n):
