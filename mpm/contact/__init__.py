@@ -26,6 +26,7 @@ Further files
     step_threaded  the same for a scene in slabs, by threads; solve_threaded its impulses
     texture    what a press that bites twice says of a body
     triangles  signed distance of a closed triangle mesh
+    pairs      contacts between bodies: a scene of one body has NoPairs, and compiles nothing of them
     held       bodies that stand still beside others that move
     links      where heat passes between bodies
     stretched  how far the surfaces of a pair have grown, for a warning
