@@ -14,6 +14,7 @@ import contextlib
 import hashlib
 import json
 import os
+import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -71,6 +72,17 @@ class Spent:
         text = f"compiling {name}: {left:.0f} s left, {functions}, {kernels}, once on this machine"  # a narrow terminal cuts its end
         for listener in self.heard:
             listener(text, seconds, 0.0)
+
+    def wait(self, kernel: str, process: subprocess.Popen) -> None:
+        """Until a process beside this one has compiled a kernel, which counts as compiling here."""
+        began = time.perf_counter()
+        for listener in self.heard:
+            listener(f"compiling {NAMES[kernel]} in a process beside this one, once on this machine", met().get(kernel, MET[kernel])[1], 0.0)
+        process.wait()
+        took = time.perf_counter() - began
+        self.total += took
+        for listener in self.heard:
+            listener("", 0.0, took)
 
 
 spent = Spent()

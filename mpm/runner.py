@@ -1,7 +1,7 @@
 """One point of a sweep: from a validated experiment to a Run. The shell, the workers and `mpm.run` all come through here.
 
 run_point(experiment, beat, compare, keeper, threads) -> Run      run_points(experiments) -> list of Runs, for material points
-warm(experiment): compile what it needs      compile_ahead(experiment): its two large kernels, at once
+warm(experiment): compile what it needs
 estimate(experiment): what it will cost (mpm.costs)      refuse(experiment): SceneError where no method here can run it, before anything is compiled
 Bodies without `elastic` do not move: heat alone, on the nodes of an immersed Galerkin problem (mpm.rigid). Otherwise particles (mpm.simulation).
 In dimension 0 there is neither: a material point along its loading (mpm.point).
@@ -9,9 +9,6 @@ In dimension 0 there is neither: a material point along its loading (mpm.point).
 
 import functools
 import itertools
-import json
-import subprocess
-import sys
 
 import numpy as np
 import scipy.linalg  # noqa: F401 - its BLAS is one of those that are limited
@@ -23,22 +20,12 @@ from mpm.costs import estimate, mechanics_settled, refuse_endless, settled
 from mpm.guards import MODERATE
 from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
-from mpm.records.provenance import cores
 from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.framing import choice
 from mpm.scene.inventory import physics
 from mpm.scene.refusal import SceneError, placed
 from mpm.state import Run
-
-WORTH_A_PROCESS = 5.0  # s of compiling from which another process, which starts in 1 to 2 s, saves time
-HEAT_STEP = """
-import json, sys
-sys.path[:] = json.loads(sys.argv[1])
-from mpm.config import restore
-from mpm.runner import compile_heat
-compile_heat(restore(json.load(sys.stdin)))
-"""
 
 
 @placed
@@ -50,6 +37,8 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
     threads    that share the work of one large run (mpm.integrate.step_threaded); the result is the same for any number
     """
     if not compiling.begun():
+        from mpm.ahead import compile_ahead
+
         compiling.expect(experiment)
         compile_ahead(experiment)
     with blas().limit(limits=1, user_api="blas"):
@@ -215,6 +204,7 @@ def warm(experiment) -> None:
     experiment = settled(experiment)
     short = experiment.resolved() | {"formulas": {}}  # what they say stands in the numbers, which are changed here
     if experiment.moving and experiment.grid.dimension != 0:
+        from mpm.ahead import at_start
         from mpm.total.drive import present_limits
 
         scene, clock = at_start(experiment)
@@ -224,62 +214,6 @@ def warm(experiment) -> None:
     short["output"]["every"] = short["time"]["end"]
     short["sweep"] = None
     run_point(load(short))
-
-
-def compile_ahead(experiment) -> None:
-    """Where a scene needs the mechanical and the heat step, neither is in the cache and there are two cores: compile both at once.
-
-    A process of its own compiles the heat step, this one the mechanical step; later calls find both in the cache.
-    """
-    if cores() < 2 or not experiment.moving or experiment.grid.dimension == 0 or compiling.expected(experiment) < WORTH_A_PROCESS:
-        return
-    if getattr(experiment.model, "kind", "full") == "auto" or not any(material.heat is not None for material in experiment.materials.values()):
-        return
-    if experiment.method.mechanics != "explicit":
-        return
-    experiment = settled(experiment)
-    helper = subprocess.Popen(
-        [sys.executable, "-P", "-c", HEAT_STEP, json.dumps(sys.path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
-    )
-    try:
-        helper.stdin.write(json.dumps(experiment.resolved()))
-        helper.stdin.close()
-        compile_step(experiment)
-        helper.wait()
-    except OSError:  # the helper has died: the heat step is compiled when it is called
-        return
-    finally:
-        if helper.poll() is None:
-            helper.kill()
-            helper.wait()
-
-
-def at_start(experiment):
-    from mpm.scene.build import build
-    from mpm.simulation import Clock
-
-    scene = build(experiment)
-    return scene, Clock(scene)
-
-
-def compile_step(experiment) -> None:
-    """Compile the mechanical step, by a block of no steps."""
-    from mpm.simulation import advance_block, work_arrays
-    from mpm.total.drive import advance_references, present_limits
-
-    scene, clock = at_start(experiment)
-    (advance_references if scene.references else advance_block)(scene, clock, work_arrays(scene), present_limits(scene, clock).step(), 0)
-
-
-def compile_heat(experiment) -> None:
-    """Compile the heat step, by one of the pace that a run begins with."""
-    from mpm.simulation import work_arrays
-    from mpm.total.drive import present_limits
-    from mpm.warming import warm_bodies
-
-    scene, clock = at_start(experiment)
-    now = present_limits(scene, clock)
-    warm_bodies(scene, clock, work_arrays(scene), 0.0, min(scene.heat_step or now.pace, float(scene.times[1])), now)
 
 
 __all__ = ["estimate", "refuse", "run_point", "run_points", "warm"]

@@ -22,7 +22,7 @@ LAYERS = {
     "diagnostics": 2, "follow": 2, "implicit": 2, "integrate": 2, "total": 2, "contact": 2,
     "error": 2, "inflow": 3, "fields": 3, "guards": 3, "observe": 3, "simulation": 3, "warming": 3, "rigid": 3, "point": 3,
     "config": 4, "records": 4, "scene": 4, "starting": 4,
-    "reference": 5, "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
+    "ahead": 5, "reference": 5, "runner": 5, "review": 5, "reduce": 5, "costs": 5, "sweep": 5, "verification": 5,
     "study": 6, "plots": 6, "fit": 6, "sensitivity": 6, "opened": 6,
     "exports": 7, "movies": 7, "reports": 8, "notebook": 9, "benchmarks": 9,
 }  # fmt: skip
@@ -33,7 +33,7 @@ PEERS = {
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate", "total", "diagnostics"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards", "warming"}, "observe": {"fields"},
-    "reduce": {"costs"}, "runner": {"verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
+    "reduce": {"costs"}, "ahead": {"costs"}, "runner": {"ahead", "verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
     "study": {"plots"}, "opened": {"plots"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables", "mpm.text", "mpm.triangles", "mpm.warned"}  # anyone may import it
