@@ -33,8 +33,8 @@ PEERS = {
     "scene": {"config"},  # Config -> Scene
     "integrate": {"diagnostics"}, "total": {"integrate", "diagnostics"}, "contact": {"integrate"}, "implicit": {"contact", "integrate", "total", "diagnostics"},
     "error": {"diagnostics"}, "simulation": {"observe", "guards", "warming"}, "observe": {"fields"},
-    "reduce": {"costs"}, "ahead": {"costs"}, "runner": {"ahead", "verification", "costs", "reduce", "review"}, "sweep": {"runner", "verification", "costs", "reduce"},
-    "study": {"plots"}, "opened": {"plots"},
+    "reduce": {"costs"}, "ahead": {"costs"}, "runner": {"ahead", "verification", "costs", "reduce", "review"},
+    "sweep": {"runner", "verification", "costs", "reduce"}, "study": {"plots"}, "opened": {"plots"},
 }  # fmt: skip
 LEAVES = {"mpm.records.variables", "mpm.text", "mpm.triangles", "mpm.warned"}  # anyone may import it
 GEOMETRY = {"mpm.scene.shapes", "mpm.scene.cut", "mpm.scene.sides", "mpm.scene.sphere", "mpm.scene"}  # pure geometry, below rigid heat
