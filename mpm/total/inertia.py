@@ -15,6 +15,7 @@ import numpy as np
 
 from mpm.boundary import CONTACT, STICK, directions, extents
 from mpm.jit import kernel
+from mpm.lanes import load4, peek, splat4, store
 from mpm.state import PAD, Cubic
 from mpm.total.reference import hold
 
@@ -46,13 +47,17 @@ def spreading(space, m: np.ndarray, active: np.ndarray, walls: np.ndarray) -> tu
 @kernel
 def follow(reference):
     """v of the nodes from the momentum that they carry."""
-    p, v, spread, beside, D = reference.p, reference.v, reference.spread, reference.beside, reference.X.shape[1]
-    for n in reference.active:
-        for c in range(D):
-            total = (1.0 + spread[n, 0]) * p[n, c]
-            for k in range(len(beside)):
-                total -= spread[n, 1 + k] * p[n + beside[k], c]
-            v[n, c] = total
+    p, v, spread, beside = reference.p, reference.v, reference.spread, reference.beside
+    one, row = spread.dtype.type(1), spread.shape[1]
+    if p.shape[1] == 4:  # lanes of a node
+        for n in reference.active:
+            total = splat4(one + peek(spread, row * n)) * load4(p, 4 * n)
+            for k in range(row - 1):
+                total = total - splat4(peek(spread, row * n + 1 + k)) * load4(p, 4 * (n + beside[k]))
+            store(v, 4 * n, total)
+    else:
+        for n in reference.active:
+            v[n, 0] = (one + spread[n, 0]) * p[n, 0] - spread[n, 1] * p[n + beside[0], 0] - spread[n, 2] * p[n + beside[1], 0]
     hold(v, reference)
 
 
