@@ -19,10 +19,12 @@ from mpm.implicit.free import Free, couple, settle
 from mpm.implicit.matrix import Band, add_diagonal, diagonal, new_matrix, solver, untwisted
 from mpm.implicit.nodes import third_differences
 from mpm.implicit.volume import assemble_volume
+from mpm.state import Axisymmetric
 
 CLOSE, SQUARE, MOST_MOVE = 1e-5, 1e-6, 0.5  # cells
 ITERATIONS, HALVINGS, SHIFTS, LAGS = 30, 30, 12, 20
 FIRST_SHIFT, ARMIJO = 1e-6, 1e-4
+ROUNDED = 1e-13  # of forces: a sum of them that is nothing
 
 
 @dataclass
@@ -175,8 +177,30 @@ def newton_step(problem: Problem, u, r, matrix, depth) -> tuple[np.ndarray | Non
         step, rest = found[0], np.diag(k) + np.einsum("qnc,pnc->qp", c, found[1:])  # k - c K^-1 c
         if Q and np.linalg.eigvalsh(rest + rest.T)[0] <= 0.0:
             continue
+        if problem.following is not None:
+            as_a_whole(problem, r, step, depth)
         return step - np.einsum("q,qnc->nc", np.linalg.solve(rest, np.einsum("qnc,nc->q", c, step)), found[1:]) if Q else step, tried
     return None, SHIFTS
+
+
+def as_a_whole(problem: Problem, r: np.ndarray, step: np.ndarray, depth: np.ndarray) -> None:
+    """Where nothing holds or touches a body, inertia and drag alone say how far it moves as a whole: shifts and a solver that stops early do not."""
+    if depth.any() or problem.pushed.limit.any():
+        return
+    m, pace, pull = problem.nodes.m, 1.0 / problem.dt**2 + problem.drag / problem.dt, problem.begun[1]
+    for c in np.flatnonzero(unheld(problem)):
+        whole = np.sum(r[:, c])
+        whole = whole if abs(whole) > ROUNDED * np.sum(np.abs(pull[:, c])) else 0.0
+        step[:, c] -= (whole / pace + np.sum(m * step[:, c])) / np.sum(m)
+
+
+def unheld(problem: Problem) -> np.ndarray:
+    """(D,) whether no wall and no axis keeps a body from moving along a direction: no node is held there, and no weights are folded."""
+    nodes = problem.nodes
+    folded = [np.sum(np.where(nodes.flip >> c & 1, -nodes.w, nodes.w), axis=1).min() < 1.0 - 1e-9 for c in range(nodes.eq.shape[1])]
+    found = (nodes.eq >= 0).all(axis=0) & ~np.array(folded)
+    found[0] &= not isinstance(problem.space, Axisymmetric)
+    return found
 
 
 def shares(problem: Problem, matrix) -> np.ndarray:
