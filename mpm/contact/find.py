@@ -80,8 +80,17 @@ def find_lone_no_exchange(surface, space, body, b, stops, found, count):
 @find_lone.register(Surface)
 def find_lone_surface(surface, space, body, b, stops, found, count):
     D, x, place = directions(space), body.particles.x, np.empty(directions(space))
+    low, high = np.full(D, -1e300), np.full(D, 1e300)  # most particles are within, and no more is asked of them
+    for axis in range(D):
+        if stops[b, axis, 0] >= 0.0:
+            low[axis] = 0.51 * space.h
+        if stops[b, axis, 1] >= 0.0:
+            high[axis] = (extents(space)[axis] - 1 - 2 * PAD - 0.51) * space.h
     for p in range(x.shape[0]):
-        if surface.row[p] >= 0:
+        within = True
+        for axis in range(D):
+            within = within and low[axis] < x[p, axis] < high[axis]
+        if within or surface.row[p] >= 0:
             continue
         for axis in range(D):
             for side in range(2):

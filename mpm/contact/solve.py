@@ -1,7 +1,7 @@
 """The impulses of a step: projected Gauss-Seidel over the contacts, from those of the step before.
 
 A = sum W_A^2/m_i + sum W_B^2/m_j, the same for every direction;   lambda_n <- max(0, lambda_n - (u_n + max(g/dt, -PUSH c))/A),
-lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when no contact changes its speed by more than CLOSE c, or after SWEEPS.
+lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when no contact changes its speed A lambda by more than CLOSE of the largest, or after SWEEPS.
 A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
 Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work;
 of scenes in slabs: solve_threaded.py.
@@ -17,8 +17,8 @@ from mpm.contact.weights import WIDE
 from mpm.jit import kernel
 from mpm.lanes import fma, load4, splat4, store
 
-PUSH, CLOSE, SWEEPS = 0.01, 1e-7, 60
-COARSE = 2e-6  # CLOSE of nodes in float32
+PUSH, CLOSE, SWEEPS = 0.01, 3e-3, 60
+FAINT = 1e-9  # of the speed of sound: smaller changes are none
 SURE = 0.1  # cells: closer gaps are always in the sweeps
 
 
@@ -27,6 +27,7 @@ class Problem(NamedTuple):
 
     contacts: Any
     at: np.ndarray  # (C, 2, M) their numbers among those
+    row: np.ndarray  # (C * 2 * M,) the same, in one row
     coef: np.ndarray  # (C, 2, M, WIDE) W
     velocity: np.ndarray  # (K, WIDE)
     light: np.ndarray  # (K,) 1/m; 0 without mass
@@ -61,7 +62,7 @@ def pose(space, contacts, count, weights, fields, nodes, tools, number):
         light[j] = 1.0 / mass if mass > 0.0 else 0.0
         for c in range(D):
             velocity[j, c] = nodes[field[j], place[j], c]
-    return Problem(contacts, at, coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
+    return Problem(contacts, at, at.reshape(-1), coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
 
 
 @kernel
@@ -77,11 +78,10 @@ def settle(space, problem, nodes, force):
 
 
 @kernel
-def press(space, problem, dt, sound, warm, rows, close):
+def press(space, problem, dt, sound, warm, rows):
     """The impulses of all contacts, applied to the velocities of the problem and to free tools.
 
     warm (P, against, D): impulses of the step before; rows (against,): where they are kept. Those of contacts far off are zero.
-    Ends when none changes its speed by more than `close` times that of sound.
     """
     count, D = len(problem.impulse), directions(space)
     inverse, live, lively, u = np.zeros(count), np.empty(count, np.int64), 0, np.zeros(WIDE)
@@ -93,10 +93,11 @@ def press(space, problem, dt, sound, warm, rows, close):
     for k in range(lively):
         begin(problem, live[k], D, warm, rows, u)
     for sweep in range(SWEEPS):
-        worst = 0.0
+        worst, largest = 0.0, FAINT / CLOSE * sound
         for k in range(lively):
-            worst = max(worst, one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u))
-        if worst <= close * sound:
+            changed, given = one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u)
+            worst, largest = max(worst, changed), max(largest, given)
+        if worst <= CLOSE * largest:
             break
 
 
@@ -124,23 +125,29 @@ def borne(problem, i, u):
     total, M = splat4(0.0), problem.at.shape[2]
     for k in range(2):
         if problem.contacts.body[i, k] >= 0:
-            for m in range(M):
-                weight = load4(problem.coef, WIDE * ((2 * i + k) * M + m))
-                total = fma(weight * weight, splat4(problem.light[problem.at[i, k, m]]), total)
+            for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
+                weight = load4(problem.coef, WIDE * m)
+                total = fma(weight * weight, splat4(problem.light[np.uint64(node(problem, m))]), total)
     store(u, 0, total)
+
+
+@kernel(inline=True)
+def node(problem, m):
+    """Number m of all nodes of all contacts. An unsigned index is never looked at for being negative, which costs as much as what is done with it."""
+    return problem.row[np.uint64(m)]
 
 
 @kernel(inline=True)
 def through(problem, i, k):
     """sum W v of side k of contact i: three sums at once, as each waits for its last product."""
     M = problem.at.shape[2]
-    here, one, two, three = WIDE * (2 * i + k) * M, splat4(0.0), splat4(0.0), splat4(0.0)
-    for m in range(0, M - 2, 3):
-        one = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), one)
-        two = fma(load4(problem.coef, here + WIDE * (m + 1)), load4(problem.velocity, WIDE * problem.at[i, k, m + 1]), two)
-        three = fma(load4(problem.coef, here + WIDE * (m + 2)), load4(problem.velocity, WIDE * problem.at[i, k, m + 2]), three)
-    for m in range(M - M % 3, M):
-        one = fma(load4(problem.coef, here + WIDE * m), load4(problem.velocity, WIDE * problem.at[i, k, m]), one)
+    here, one, two, three = (2 * i + k) * M, splat4(0.0), splat4(0.0), splat4(0.0)
+    for m in range(here, here + M - 2, 3):
+        one = fma(load4(problem.coef, WIDE * m), load4(problem.velocity, WIDE * node(problem, m)), one)
+        two = fma(load4(problem.coef, WIDE * (m + 1)), load4(problem.velocity, WIDE * node(problem, m + 1)), two)
+        three = fma(load4(problem.coef, WIDE * (m + 2)), load4(problem.velocity, WIDE * node(problem, m + 2)), three)
+    for m in range(here + M - M % 3, here + M):
+        one = fma(load4(problem.coef, WIDE * m), load4(problem.velocity, WIDE * node(problem, m)), one)
     return one + two + three
 
 
@@ -165,10 +172,10 @@ def push(problem, i, D, change):
     for k in range(2):
         if contacts.body[i, k] < 0:
             continue
-        here, way = WIDE * (2 * i + k) * M, size if k == 0 else -size
-        for m in range(M):
-            n = problem.at[i, k, m]
-            weight = load4(problem.coef, here + WIDE * m) * splat4(problem.light[n])
+        way = size if k == 0 else -size
+        for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
+            n = node(problem, m)
+            weight = load4(problem.coef, WIDE * m) * splat4(problem.light[np.uint64(n)])
             store(problem.velocity, WIDE * n, fma(weight, way, load4(problem.velocity, WIDE * n)))
     recoil(problem.tools, contacts.free[i], change[:D])
 
@@ -197,7 +204,7 @@ def begin(problem, i, D, warm, rows, change):
 
 @kernel(inline=True)
 def one(problem, i, D, dt, sound, inverse, u):
-    """Relax one contact; by how much its speed changed."""
+    """Relax one contact; by how much its speed changed, and all that the contact gives."""
     contacts, impulse = problem.contacts, problem.impulse
     n, mu = contacts.normal[i], contacts.mu[i]
     speed(problem, i, D, u)
@@ -213,12 +220,12 @@ def one(problem, i, D, dt, sound, inverse, u):
     share = 0.0
     if pressed > 0.0 and mu > 0.0 and square > 0.0:
         share = 1.0 if mu == np.inf or square <= (mu * pressed) ** 2 else mu * pressed / square**0.5
-    largest = 0.0
+    changed, given = 0.0, 0.0
     for c in range(D):
         new = share * u[c] + pressed * n[c]
         u[c] = new - impulse[i, c]
         impulse[i, c] = new
-        largest = max(largest, abs(u[c]))
-    if largest > 0.0:
+        changed, given = max(changed, abs(u[c])), max(given, abs(new))
+    if changed > 0.0:
         push(problem, i, D, u)
-    return largest / inverse[i]
+    return changed / inverse[i], given / inverse[i]

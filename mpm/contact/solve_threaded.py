@@ -2,13 +2,13 @@
 
 A contact belongs to the slab of its particle. The nodes that a slab may touch are those of integrate/step_threaded.py, so even slabs never meet, and an odd
 one waits for the two beside it: each takes TURNS sweeps over its own contacts, and those that reach farther, or push a tool that forces move, come after all,
-by one thread. It ends where a first sweep of every slab changes no speed by more than `close` times that of sound: as solve.press, in another order.
+by one thread. It ends where a first sweep of every slab changes no speed by more than CLOSE of the largest: as solve.press, in another order.
 """
 
 import numpy as np
 
 from mpm.boundary import directions, extents
-from mpm.contact.solve import SWEEPS, begin, one, ready
+from mpm.contact.solve import CLOSE, FAINT, SWEEPS, begin, one, ready
 from mpm.contact.spots import seen
 from mpm.contact.weights import WIDE
 from mpm.integrate.step_threaded import wave
@@ -51,26 +51,27 @@ def start(space, problem, members, first, which, warm, rows):
 
 
 @kernel
-def relax(space, problem, members, first, which, limits, inverse, changed):
-    """TURNS sweeps over the contacts of the slabs `which`; changed[s]: the largest change of a speed in the first. limits: dt, speed of sound, close."""
-    D, u, (dt, sound, close) = directions(space), np.zeros(WIDE), limits
+def relax(space, problem, members, first, which, limits, inverse, most):
+    """TURNS sweeps over the contacts of the slabs `which`; most[:, s]: of the first, the largest change of a speed and speed. limits: dt, speed of sound."""
+    D, u, (dt, sound) = directions(space), np.zeros(WIDE), limits
     for s in which:
         low, high = first[s], first[s + 1]
         for turn in range(TURNS):
-            worst = 0.0
+            worst, largest = 0.0, FAINT / CLOSE * sound
             for k in range(high - low):
-                worst = max(worst, one(problem, members[low + k if turn % 2 == 0 else high - 1 - k], D, dt, sound, inverse, u))
+                changed, given = one(problem, members[low + k if turn % 2 == 0 else high - 1 - k], D, dt, sound, inverse, u)
+                worst, largest = max(worst, changed), max(largest, given)
             if turn == 0:
-                changed[s] = worst
-            if worst <= close * sound:
+                most[0, s], most[1, s] = worst, largest
+            if worst <= CLOSE * largest:
                 break
 
 
-def press_in_slabs(space, problem, ahead, sound, touching, close, slabs, crew) -> None:
+def press_in_slabs(space, problem, ahead, sound, touching, slabs, crew) -> None:
     """As solve.press."""
     count, starts, M = len(problem.impulse), slabs.starts, slabs.starts.shape[1] - 1
-    inverse, changed, order, last = np.zeros(count), np.zeros(M + 1), wave(M), np.array([M])
-    warm, rows, limits = touching.warm, touching.rows, (ahead, sound, close)
+    inverse, most, order, last = np.zeros(count), np.zeros((2, M + 1)), wave(M), np.array([M])
+    warm, rows, limits = touching.warm, touching.rows, (ahead, sound)
 
     def prepare(which):
         for part in which // 2:
@@ -85,8 +86,8 @@ def press_in_slabs(space, problem, ahead, sound, touching, close, slabs, crew) -
     if alone:
         start(space, problem, members, first, last, warm, rows)
     for _ in range(SWEEPS // TURNS):
-        crew.work(order, lambda which: relax(space, problem, members, first, which, limits, inverse, changed))
+        crew.work(order, lambda which: relax(space, problem, members, first, which, limits, inverse, most))
         if alone:
-            relax(space, problem, members, first, last, limits, inverse, changed)
-        if changed.max() <= close * sound:
+            relax(space, problem, members, first, last, limits, inverse, most)
+        if most[0].max() <= CLOSE * most[1].max():
             break

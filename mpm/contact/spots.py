@@ -13,6 +13,8 @@ from mpm.jit import kernel
 from mpm.state import PAD
 from mpm.transfer import uses_basis_gradient
 
+WIDE = 4  # numbers of a weight: D directions and nothing
+
 
 @kernel
 def seen(space):
@@ -22,11 +24,9 @@ def seen(space):
 
 @kernel
 def new_spots(space):
-    """Scratch of `spot`: nodes at (M,), weights w (M,), gradients G (D, M), ways (D, M) from the particle, signs (D, M), and per direction (`along`)."""
+    """Scratch of `along`."""
     D, reach = directions(space), seen(space)
-    M = reach**D
-    line, place, mirror = np.empty((3, D, reach)), np.zeros((3, reach), np.int64), np.empty((2, D, reach), np.int64)
-    return np.empty(M, np.int64), np.empty(M), np.empty((D, M)), np.empty((D, M)), np.empty((D, M)), line, place, mirror
+    return np.empty((3, D, reach)), np.zeros((3, reach), np.int64), np.empty((2, D, reach), np.int64)
 
 
 @kernel(inline=True)
@@ -35,7 +35,7 @@ def along(space, walls, home, spots):
 
     weights, slopes [1/m] and ways [m] (3, D, reach); places (3, reach), 0 where the space has no such direction; side of the mirror and whether on its plane.
     """
-    line, place, mirror = spots[5], spots[6], spots[7]
+    line, place, mirror = spots
     D, shape, mirrored = directions(space), extents(space), False
     for a in range(D):
         i0, wa, ga, da, _ = stencil(space.basis, home[a] / space.h)
@@ -52,55 +52,34 @@ def along(space, walls, home, spots):
     return mirrored
 
 
-@kernel(inline=True)
-def spot(space, gradient, walls, home, spots):
-    """Fill the scratch for a particle at `home`, as `along`."""
-    at, w, G, way, sign, line, place, mirror = spots
-    D, shape, reach = directions(space), extents(space), place.shape[1]
-    mirrored = along(space, walls, home, spots)
-    own = uses_basis_gradient(gradient)
-    scale = 0.0 if own else inverse_moment(space.basis) / space.h**2
-    at[0], w[0], size = 0, 1.0, 1
-    for c in range(D):
-        G[c, 0], way[c, 0] = 1.0, 0.0
-    for a in range(D):  # products, one direction after another, from the last on: what is read is not yet written over
-        for m in range(size - 1, -1, -1):
-            n, weight = at[m] * shape[a], w[m]
-            for k in range(reach):
-                at[m * reach + k], w[m * reach + k] = n + place[a, k], weight * line[0, a, k]
-        for c in range(D):
-            row = 1 if own and c == a else 0
-            for m in range(size - 1, -1, -1):
-                slope, there = G[c, m], way[c, m]
-                for k in range(reach):
-                    if own:
-                        G[c, m * reach + k] = slope * line[row, a, k]
-                    way[c, m * reach + k] = line[2, a, k] if c == a else there
-        size *= reach
-    for c in range(D):
-        for m in range(size):
-            sign[c, m] = 1.0
-            if not own:
-                G[c, m] = scale * w[m] * way[c, m]
-    if mirrored:
-        flip(walls, mirror, sign)
-    return mirrored
-
-
 @kernel
-def flip(walls, mirror, sign):
-    """Signs of nodes that stand for ghosts, or lie on a mirror's own plane."""
-    (D, M), reach = sign.shape, mirror.shape[2]
-    for m in range(M):
-        rest, stride = m, M
-        for a in range(D):
-            stride //= reach
-            k = rest // stride
-            rest -= k * stride
-            if mirror[0, a, k] >= 0:
-                for c in range(D):
-                    if held(walls[a, mirror[0, a, k]], a, c):
-                        sign[c, m] *= 0.0 if mirror[1, a, k] == 1 else -1.0
+def new_lines(space):
+    """Room for what is a product of three numbers a node, one a direction: (3, reach, WIDE), one where the space lacks a direction."""
+    return np.ones((3, seen(space), WIDE))
+
+
+@kernel(inline=True)
+def slopes(space, gradient, spots, lines):
+    """The gradient operator of a particle and, last, its weights, as products of three; after `along`."""
+    line, own = spots[0], uses_basis_gradient(gradient)
+    scale = 0.0 if own else inverse_moment(space.basis) / space.h**2
+    for a in range(directions(space)):
+        for k in range(lines.shape[1]):
+            for c in range(WIDE):
+                lines[a, k, c] = line[0, a, k]
+            lines[a, k, a] = line[1, a, k] if own else scale * line[0, a, k] * line[2, a, k]
+
+
+@kernel(inline=True)
+def turns(space, walls, spots, lines):
+    """The signs of a vector on the nodes, as products of three, and nothing for what is no direction; after `along`."""
+    mirror, D = spots[2], directions(space)
+    for a in range(D):
+        for k in range(lines.shape[1]):
+            for c in range(WIDE):
+                lines[a, k, c] = 1.0 if c < D else 0.0
+                if c < D and mirror[0, a, k] >= 0 and held(walls[a, mirror[0, a, k]], a, c):
+                    lines[a, k, c] = 0.0 if mirror[1, a, k] == 1 else -1.0
 
 
 @kernel(inline=True)
@@ -109,7 +88,7 @@ def pulls(space, gradient, walls, home, spots, lines):
 
     G_ip with the signs of mirrors, and in an axisymmetric body w/r along r. Where the space lacks a direction its first line stays one.
     """
-    line, mirror, D, own = spots[5], spots[7], directions(space), uses_basis_gradient(gradient)
+    line, mirror, D, own = spots[0], spots[2], directions(space), uses_basis_gradient(gradient)
     scale = 0.0 if own else inverse_moment(space.basis) / space.h**2
     for a in range(D):
         for k in range(mirror.shape[2]):

@@ -13,7 +13,7 @@ from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import CLOSE, COARSE, pose, press, settle, speed
+from mpm.contact.solve import pose, press, settle, speed
 from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
@@ -137,14 +137,8 @@ def resolve(method, touching, skin, grids, now, pace, near):
     """The impulses of the contacts, on the nodes; near: contacts, how many, weights."""
     (contacts, count, weights), space, nodes = near, method.space, grids.nodes[:, now]
     problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
-    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows, closeness(nodes))
+    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows)
     finish(method, touching, skin, grids, now, pace.dt, problem)
-
-
-@kernel
-def closeness(nodes):
-    """Of the speed of sound: the change of speed at which sweeps end."""
-    return COARSE if nodes.itemsize == 4 else CLOSE
 
 
 @kernel

@@ -10,7 +10,7 @@ from mpm.boundary import CONTACT, directions, extents
 from mpm.contact.skin import new_skin
 from mpm.contact.solve import pose
 from mpm.contact.solve_threaded import PART, press_in_slabs
-from mpm.contact.step import after_contacts, before_contacts, closeness, finish, seek
+from mpm.contact.step import after_contacts, before_contacts, finish, seek
 from mpm.contact.weights import fall_short, mark, new_weights, shares, unmark
 from mpm.integrate.step_parts import method_of, scratch
 from mpm.integrate.step_threaded import steps_in_slabs, wave
@@ -36,7 +36,7 @@ def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
             nodes = grids.nodes[:, now]
             weights = weigh_in_slabs(scene, touching, skin, (contacts, count), nodes, slabs, crew)
             problem = pose(scene.space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
-            press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, closeness(nodes), slabs, crew)
+            press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, slabs, crew)
             finish(method, touching, skin, grids, now, pace.dt, problem)
         after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, slabs.reports[-1])
 
