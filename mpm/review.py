@@ -93,13 +93,13 @@ def joules(experiment: Any) -> str:
 
 
 def within(experiment: Any, run: Run) -> float:
-    """The heat that evens out between warm and cold at the start [J]: the scale of a scene that exchanges none, whose ledger is round-off."""
+    """The heat that evens out between warm and cold at the start, or a billionth of all [J]: the scale where none is exchanged and the ledger is round-off."""
     least, most = float(run.series["temperature_min"][0]), float(run.series["temperature_max"][0])
     alphas = [value(law(material.heat.alpha), least) for material in experiment.materials.values() if material.heat is not None]
-    if not alphas or most == least:
+    if not alphas:
         return 0.0
     mass = run.series["mass_total"][0] if "mass_total" in run.series else sum(body["mass_total"] for body in matter(experiment))
-    return float(mass) * max(alphas) * (most - least)
+    return float(mass) * max(alphas) * max(most - least, 1e-9 * most)
 
 
 def heat(experiment: Any, run: Run) -> Iterator[str]:

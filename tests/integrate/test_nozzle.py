@@ -214,3 +214,20 @@ def test_a_jet_pushes_on_a_wall_with_its_momentum():
     }  # fmt: skip
     run = run_of(data)
     assert run.series["force_bottom_y"][13:].mean() == pytest.approx(0.1, rel=0.05)
+
+
+def test_a_sweep_over_what_flows_in(tmp_path):
+    """Over rate and temperature of a round stream: a dataset with both axes, the mass of each point what its rate brings, its heat that of its temperature."""
+    from mpm.sweep.api import execute, tree_of
+    from mpm.sweep.engine import Options
+
+    body = config("axisymmetric", {"rate": 0.1})
+    del body["bodies"]["s"]["inflow"]["velocity"]
+    rates, warm = [0.03, 0.06, 0.08], [300.0, 320.0]
+    data = body | {"gravity": [0, -0.01], "sweep": {"axes": {"rate": rates, "inflow.temperature": warm}}}
+    assert execute(mpm.load(data), tmp_path, Options(jobs=0)).exit_code == 0
+    found = tree_of(tmp_path / "sweep.nc")
+    assert found.sizes == {"rate": 3, "inflow_temperature": 2} and not found.warnings.values.any()
+    assert found.rate.attrs["units"] == "m3/s" and found.mass_total[:, 0].values == pytest.approx([2 * 0.6 * rate for rate in rates], rel=1e-12)
+    assert found.heat_inflow[:, 0].values == pytest.approx(0.0, abs=1e-12)
+    assert (found.heat_inflow / found.mass_inflow)[1:, 1].values == pytest.approx(1.5 * 20.0, rel=1e-12)
