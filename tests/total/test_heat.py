@@ -125,16 +125,17 @@ def test_verification_problems(name, field, order, last):
 
 @pytest.mark.slow
 def test_cooks_membrane_with_and_without_fbar():
-    """nu = 0.499, cells of 4 and 2: the tip within 2 and 1 % with F-bar; without, it locks (7 and 3 %)."""
+    """nu = 0.499, cells of 4 and 2: the tip 0.35 and 0.15 % off with F-bar; without, it locks (2.4 and 0.98 %; 6.7 and 2.9 % while the clamp was an odd
+    mirror, before equation (14.3) of docs/physics.md)."""
     from pathlib import Path
 
     from mpm.runner import run_point
 
     path = Path(__file__).parents[2] / "configs" / "verification" / "cooks_membrane.yaml"
-    for cell, wrong in ((4.0, 0.02), (2.0, 0.01)):
+    for cell, wrong in ((4.0, 0.0045), (2.0, 0.002)):
         changes = {"method.frame": "total", "sweep": None, "grid.cell": cell}
         assert abs(run_point(mpm.load(str(path), changes)).finals["error_tip"]) < wrong
-        assert abs(run_point(mpm.load(str(path), changes | {"method.locking": None})).finals["error_tip"]) > 2.5 * wrong
+        assert abs(run_point(mpm.load(str(path), changes | {"method.locking": None})).finals["error_tip"]) > 4.5 * wrong
 
 
 def test_mirrors_hold():
