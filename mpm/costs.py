@@ -92,7 +92,8 @@ def held_bytes(experiment, particles: int) -> int:
 
 
 def bytes_particle(experiment) -> int:
-    """At the peak of a run, where motion is summed up (mpm.observe): the state; x, v, m, J, V0, squares of v and C; v and C that it goes on from (insync)."""
+    """At the peak of a run, the state, and what a record adds to it: v and C that it goes on from, and the state again with v and C of two steps that
+    move nothing (mpm.contact.insync), or where motion is summed up (mpm.observe) x, v, m, J, V0, squares of v and C. Total and implicit: the sums alone."""
     D, real = experiment.grid.directions, 4 if experiment.method.precision == "float32" else 8
     state = real * (2 * D + D * D + COMPONENTS[D] + 3)  # x, v, C, B, J, m, V0
     if any(material.heat is not None for material in experiment.materials.values()):
@@ -103,12 +104,12 @@ def bytes_particle(experiment) -> int:
         state += 8 * (2 + D + 2 * D * D)  # forces, their moments, F, time
     if experiment.method.frame == "total":  # places in the reference shape, what flow left
         state += real * (D + COMPONENTS[D] * any(material.flow is not None for material in experiment.materials.values()))
-    return state + real * (D + D * D) + 8 * (2 * D + 3) + 8 * (D * D + 2 * D) + 8
+    sums, apart, lags = 8 * (D * D + 4 * D + 4), real * (D + D * D), experiment.method.frame == "updated" and experiment.method.mechanics == "explicit"
+    return state + apart + max(sums, (state + 2 * apart) * lags)
 
 
 def bytes_node(experiment) -> int:
-    """Of the nodes that bodies reach: two buffers of momentum and mass, or in the total frame displacement, velocity, momentum, force, mass, shares of
-    neighbours, numbers; the fields of a heat step."""
+    """Of the nodes that bodies reach: two buffers of momentum and mass, or the total frame's fields, shares of neighbours, numbers; fields of a heat step."""
     real = 4 if experiment.method.precision == "float32" else 8
     warm = any(material.heat is not None for material in experiment.materials.values())
     total = (18 + 2 * experiment.grid.directions) * real + 16

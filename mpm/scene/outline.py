@@ -15,8 +15,9 @@ from mpm.scene.base import Shape
 from mpm.scene.contents import nearest
 from mpm.scene.cut import Segment
 from mpm.scene.mesh import Mesh
-from mpm.scene.shapes import Ball, Box, Cylinder, shape
+from mpm.scene.shapes import Ball, Box, Cylinder, cells, shape
 
+AT_ONCE = 4096  # points whose neighbours are looked at together
 SINGLE = np.float32  # of weights: of a length of half a particle
 
 
@@ -45,12 +46,16 @@ def outline_near(experiment, name: str, x: np.ndarray) -> Carried:
     outline, radial = shape(experiment.bodies[name].shape, grid.dimension).moved(np.array(method.offset) * grid.cell), grid.dimension == "axisymmetric"
     edge, (lower, upper) = grid.cell / method.particles, outline.bounds()
     edges = [np.arange(np.floor(low / edge), np.ceil(high / edge) + 1) * edge for low, high in zip(np.maximum(lower, 0.0), upper, strict=True)]
-    place = np.concatenate([outline.cut(edges, 2)[1].x, ridges(outline, edge)])
+    place = np.concatenate([cells(outline, edges, radial).point, ridges(outline, edge)])
     place = place[place[:, 0] >= 0] if radial else place
     tree = cKDTree(x.astype(float))
     owner = tree.query(place)[1]
-    near = tree.query(x[owner].astype(float), min(len(x), 3 ** x.shape[1]))[1].reshape(len(owner), -1)
-    return carried(x.astype(float), owner, place - x[owner], near)
+    found = []
+    for some in np.array_split(np.arange(len(place)), 1 + len(place) // AT_ONCE):
+        near = tree.query(x[owner[some]].astype(float), min(len(x), 3 ** x.shape[1]))[1].reshape(len(some), -1)
+        one = carried(x.astype(float), owner[some], place[some] - x[owner[some]], near)
+        found.append(one._replace(near=near.astype(np.int32)))
+    return Carried(*map(np.concatenate, zip(*found, strict=True)))
 
 
 def neighbours(cell: np.ndarray, counts: list[int], owner: np.ndarray) -> np.ndarray:
