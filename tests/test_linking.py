@@ -128,12 +128,15 @@ for owner, name, new in SHORTCUTS:
 x = np.random.default_rng(0).random((40, 2))
 print(state_check.span(x.ravel()), sorting.sorting(sorting.first_nodes(Plane(0.1, 20, 20), x)).tolist())
 for kernel in (state_check.span, sorting.sorting, sorting.first_nodes):
-    print(re.sub(r"B2B\\d+|0x[0-9a-f]+|pickle\\w+[.]\\d+", "", next(iter(kernel.overloads.values())).library.get_llvm_str()))
+    code = re.sub(r"B2B\\d+|0x[0-9a-f]+|pickle\\w+[.]\\d+", "", next(iter(kernel.overloads.values())).library.get_llvm_str())
+    for function in code.split("\\ndefine "):
+        seen = {}
+        print(re.sub(r"%(?!arg)[\\w.]+", lambda name: f"%{seen.setdefault(name[0], len(seen))}", function))
 """
 
 
 def test_shortcuts_change_no_instruction(tmp_path):
-    """Lanes, loops, roles, named tuples and what numpy makes: the code of each kernel, but for numbers that count functions or are places in memory."""
+    """Lanes, loops, roles, named tuples and what numpy makes: the code of each kernel, but for names, numbers that count functions, and places in memory."""
     codes = []
     for way in ("short", "stock"):
         env = os.environ | {"MPM_CACHE_DIR": str(tmp_path / way), "PYTHONHASHSEED": "0"}  # names hold flags, in the order of a set
