@@ -88,7 +88,7 @@ def test_imports_go_down():
 
 
 def test_the_computing_layers_know_only_numbers():
-    more = {"rigid": {"scipy"}, "implicit": {"scipy"}, "linking": {"llvmlite"}, "lanes": {"llvmlite"}}
+    more = {"rigid": {"scipy"}, "implicit": {"scipy"}, "linking": {"llvmlite"}, "shortcuts": {"llvmlite"}, "lanes": {"llvmlite"}}
     foreign = []
     for path in (path for path in MODULES if known(path) and LAYERS[room(path)] <= COMPUTING):
         allowed = STANDARD | {"numpy", "numba", "mpm"} | more.get(room(path), set())
