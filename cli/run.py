@@ -1,5 +1,6 @@
 """mpm run: one point, in this process."""
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -68,8 +69,8 @@ def run(
         if model := record.facts.get("model"):
             dropped = "; ".join(part["dropped"] for part in model["dropped"])
             say(f"  model: {model['name']}" + (f", without {dropped}" if dropped else "; nothing can be left out"), quiet=quiet)
-        if "newton_iterations" in record.finals:
-            say(f"  {implicit(record.steps, record.finals)}", quiet=quiet)
+        if said := implicit(record.steps, record.finals):
+            say(f"  {said}", quiet=quiet)
         if idle := record.facts.get("threads_idle"):
             say(f"  {idle}", quiet=quiet)
         for text in record.warnings:
@@ -79,7 +80,9 @@ def run(
 
 
 def implicit(steps: int, finals: dict) -> str:
-    """How the steps of implicit mechanics went."""
+    """How the steps of implicit mechanics went; empty where there were none, or the run was stopped."""
+    if not math.isfinite(finals.get("newton_iterations", math.nan)):
+        return ""
     counts = {name: int(finals[name]) for name in ("steps_rejected", "steps_failed", "newton_iterations", "newton_shifts")}
     said = "implicit mechanics: {steps} steps ({steps_rejected} more made again for their error, {steps_failed} cut), {newton_iterations} iterations, "
     deep = f", at most {1e3 * finals['wall_depth']:.2g} mm deep in a wall" if finals["wall_depth"] > 0 else ""

@@ -103,6 +103,15 @@ def test_a_scene_that_no_method_runs_is_refused_before_anything_is_compiled_or_w
     assert code == 2 and out == "" and "two.yaml:" in err and said in err and [path.name for path in tmp_path.iterdir()] == ["two.yaml"]
 
 
+def test_what_implicit_steps_counted_is_told_of_a_whole_run_only():
+    """A run that was stopped has no numbers at its end: NaN."""
+    from mpm_cli.run import implicit
+
+    names = ("steps_rejected", "steps_failed", "newton_iterations", "newton_shifts", "wall_depth", "kinetic_over_work")
+    assert implicit(7, dict.fromkeys(names, float("nan"))) == "" and implicit(7, {}) == ""
+    assert "7 steps (0 more made again for their error, 0 cut), 0 iterations" in implicit(7, dict.fromkeys(names, 0.0))
+
+
 def test_another_experiment_is_refused_and_changes_nothing(mpm, write, tmp_path):
     mpm("run", write([0.2]), "-o", "out")
     before = files(tmp_path / "out")
