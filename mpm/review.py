@@ -265,7 +265,7 @@ def step(experiment: Any, run: Run) -> Iterator[str]:
 
 def ring(experiment: Any, run: Run) -> Iterator[str]:
     steps, scale = run.facts.get("heat_steps", 0), experiment.time.scale
-    if not steps or not experiment.moving or experiment.grid.dimension == 0 or run.facts.get("mechanics") == "implicit":
+    if not steps or not experiment.moving or experiment.grid.dimension == 0 or experiment.method.mechanics == "implicit":
         return
     for name, one in scales(experiment).items():
         if one.M is None or not one.gamma:

@@ -10,6 +10,7 @@ import pytest
 from scipy.special import erfcx
 
 import mpm
+from mpm.config.rules_mechanics import named
 from mpm.review import LOOKS, review
 from mpm.warned import KINDS, kinds
 
@@ -241,6 +242,7 @@ def test_what_expands_rings_between_long_heat_steps(changes, steps, told):
     found = list(LOOKS["ring"](experiment, SimpleNamespace(facts={"heat_steps": steps})))
     assert bool(found) is told
     assert not told or "4.7 times" in found[0]
+    assert not list(LOOKS["ring"](named(experiment, "implicit"), SimpleNamespace(facts={"heat_steps": steps})))  # also one that was stopped
 
 
 @pytest.mark.parametrize(("changes", "cells", "told"), [
