@@ -75,9 +75,10 @@ def test_a_lower_oven_makes_a_flatter_cake():
 def test_a_raw_pancake_spreads_to_where_its_yield_stress_holds_it():
     """Cold: the radius of N. Roussel, P. Coussot (J. Rheol. 49 (2005) 705) to 13 %, the height in the middle to 8 %.
 
-    Poured it comes to 12.4 % (cells of 3, 2, 1.5, 1 mm: 15.1, 14.4, 12.4, 11.6). It is a sixth of its radius high, but thinner it is no closer: with a half and a
-    quarter of the yield stress, 0.11 and 0.07 of the radius high, 13 and 14 %. The wall makes most of it: a cylinder let go on this one comes to 13.4, 11.8, 11.0 %
-    (3, 1.5, 1 mm), on a `stick` wall to 9.1, 4.0, 2.5. What touches a contact wall with endless friction stays, so the front has to roll over it."""
+    Poured it comes to 12.4 % (cells of 3, 2, 1.5, 1 mm: 15.1, 14.4, 12.4, 11.6). It is a sixth of its radius high, but thinner it is no closer: with a
+    half and a quarter of the yield stress, 0.11 and 0.07 of the radius high, 13 and 14 %. The wall makes most of it: a cylinder let go on this one comes
+    to 13.4, 11.8, 11.0 % (3, 1.5, 1 mm), on a `stick` wall to 9.1, 4.0, 2.5. What touches a contact wall with endless friction stays, so the front has to
+    roll over it."""
     cold = {f"surfaces.{k}.convection.beta": "0" for k in range(4)} | {"walls.bottom.contact.heat.beta": "0", "flip": "60", "end": "120"}
     found = run("pancake", RAW | cold)
     tau, V = 14 / np.sqrt(3), 60e-6
