@@ -75,7 +75,8 @@ def test_a_pressed_bar_by_every_transfer(transfer, gradient, basis):
     mirror to 0.9 of its length it has 0.915 of it, on quadratic splines 0.9001).
     """
     F = 0.999 if basis == "linear" else 0.9
-    s = finals(pressed(1, 0.3, F, method={"transfer": transfer, "gradient": gradient}) | {"grid": {"dimension": 1, "cell": 0.125, "size": [2.0], "basis": basis}})
+    grid = {"dimension": 1, "cell": 0.125, "size": [2.0], "basis": basis}
+    s = finals(pressed(1, 0.3, F, method={"transfer": transfer, "gradient": gradient}) | {"grid": grid})
     for name, sign in (("press", -1.0), ("anvil", 1.0)):
         assert sign * s[f"force_{name}_x"][-1] == pytest.approx(-np.log(F) / F, rel=0.01)
 
