@@ -96,22 +96,26 @@ def draw(rows: list[dict], path: Path) -> None:
                 ax.plot(*np.reshape(places, (-1, 2)).T, "o-" if kind == "implicit" else "s:", color=colour, label=words)
                 told = slice(None, None, 1 if kind == "explicit" else max(len(mine) - 1, 1))  # tolerances stand close: the ends of their line
                 labels += [(ax, row["setting"].partition(", ")[2], *place) for row, place in zip(mine[told], places[told], strict=True)]
-        for label in labels:  # now that all limits are known
-            beside(*label)
+        taken: dict = {ax: [] for ax in axes}  # by labels
+        fig.draw_without_rendering()  # lays panels out: now all limits are known
+        for ax, *label in labels:
+            taken[ax].append(beside(ax, taken[ax], *label))
         axes[0].set_ylabel("largest error of shape [%]")
         axes[0].legend()
         style.save(fig, path)
 
 
-def beside(ax, text: str, x: float, y: float) -> None:
-    """A label at a point, in that of four places where it lies on the least of what is drawn, sides of the frame too."""
+def beside(ax, taken: list[np.ndarray], text: str, x: float, y: float) -> np.ndarray:
+    """A label at a point, in that of four places where it lies on the least of what is drawn, sides of the frame and labels too; points that fill it."""
     lines = [ax.transData.transform(line.get_xydata()) for line in ax.lines if len(line.get_xydata())]
     lines += [ax.transAxes.transform([(side, 0), (side, 1)]) for side in (0, 1)]
-    dense = np.concatenate([np.array([np.interp(np.linspace(0, len(one) - 1, 400), np.arange(len(one)), side) for side in one.T]).T for one in lines])
-    away, (wide, high) = (dense - ax.transData.transform((x, y))) * 72 / ax.figure.dpi, (5.5 * len(text) + 8, 15)  # points
+    dense = [np.array([np.interp(np.linspace(0, len(one) - 1, 400), np.arange(len(one)), side) for side in one.T]).T for one in lines]
+    here, point, (wide, high) = ax.transData.transform((x, y)), ax.figure.dpi / 72, (5.5 * len(text) + 8, 15)
+    away = (np.concatenate([*dense, *taken]) - here) / point
     right, up = min(((right, up) for up in (1, -1) for right in (1, -1)), key=lambda to: np.sum(np.all((away * to > 1) & (away * to < (wide, high)), axis=1)))
     ax.annotate(text, (x, y), xytext=(5 * right, 5 * up), textcoords="offset points", fontsize=8, ha="left" if right > 0 else "right",
                 va="bottom" if up > 0 else "top")  # fmt: skip
+    return here + point * np.stack(np.meshgrid(np.linspace(0, wide, 40) * right, np.linspace(0, high, 20) * up), axis=-1).reshape(-1, 2)
 
 
 def main() -> None:
@@ -128,6 +132,7 @@ def main() -> None:
             rows = [row | {name: float(row[name]) for name in ("error", "seconds") if row[name]} for row in csv.DictReader(file)]
     for case in again:
         rows = [row for row in rows if row["case"] != case] + measured(case, given.most)
+        rows.sort(key=lambda row: list(CASES).index(row["case"]))
         with table.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, rows[0].keys())
             writer.writeheader()
