@@ -1,6 +1,11 @@
 """When kernels are compiled at once."""
 
-from mpm import ahead
+import subprocess
+import sys
+
+import pytest
+
+from mpm import ahead, compiling
 
 
 def test_a_second_process_is_for_an_idle_core(monkeypatch):
@@ -10,3 +15,11 @@ def test_a_second_process_is_for_an_idle_core(monkeypatch):
         assert ahead.core_to_spare() is spare
     monkeypatch.delattr(ahead.os, "getloadavg")
     assert ahead.core_to_spare()
+
+
+def test_waiting_for_the_second_process_is_told_and_counts_as_compiling():
+    told, before = [], compiling.seconds()
+    with compiling.say(lambda text, expected, took: told.append((text, took))):
+        compiling.spent.wait("heat_chebyshev", subprocess.Popen([sys.executable, "-c", "import time; time.sleep(0.2)"]))
+    assert [text for text, _ in told] == ["compiling the heat step in a process beside this one, once on this machine", ""]
+    assert told[1][1] >= 0.2 and compiling.seconds() - before == pytest.approx(told[1][1])
