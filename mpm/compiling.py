@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm.cache import kernels
-from mpm.fingerprint import contained, digest, rooms
+from mpm.fingerprint import contained, hash_of
 
 NAMES = {
     "advance": "the mechanical step", "advance_lanes": "the mechanical step", "heat_step": "the heat step", "heat_chebyshev": "the heat step",
@@ -136,7 +136,7 @@ def kind(config: Any) -> Any:
 
 def place(config: dict) -> Path:
     """The file that stands for: this config's kernels are in the cache."""
-    source = digest(rooms()[name] for name in sorted(contained("simulation") | contained("rigid") | contained("point")))
+    source = hash_of(sorted(contained("simulation") | contained("rigid") | contained("point")))
     words = {key: value if key == "grid" else kind(value) for key, value in config.items() if key not in UNLIKE}
     words["grid"] = words.get("grid", {}).get("dimension")
     made = hashlib.sha256(json.dumps([source, words], sort_keys=True, default=str).encode()).hexdigest()[:16]

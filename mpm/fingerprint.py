@@ -16,7 +16,7 @@ BELOW = re.compile(r"^(?:from|import) mpm\.(\w+)|^from mpm import \(?([\w, ]+)",
 
 def source_hash(without: frozenset | set = frozenset()) -> str:
     """Hash of every Python file of the package, less the rooms named (16 hex digits)."""
-    return digest(files for room, files in rooms().items() if room not in without)
+    return hash_of(room for room in rooms() if room not in without)
 
 
 @functools.cache
@@ -30,11 +30,29 @@ def rooms() -> dict[str, dict[str, str]]:
 
 
 def digest(parts) -> str:
+    """Of files, each a dictionary of text by place."""
     made = hashlib.sha256()
     for files in parts:
         for place, text in files.items():
             made.update(f"{place}\0{text}\0".encode())
     return made.hexdigest()[:16]
+
+
+@functools.cache
+def of_room(room: str) -> str:
+    return digest([rooms()[room]])
+
+
+def hash_of(names) -> str:
+    """Of rooms."""
+    return digest([{name: of_room(name) for name in names}])
+
+
+@functools.cache
+def imported(room: str) -> set[str]:
+    """Rooms that the modules of a room import at their tops, but those that are no part of a kernel."""
+    pairs = [pair for text in rooms()[room].values() for pair in BELOW.findall(text)]
+    return {name.strip() for pair in pairs for name in (pair[0] or pair[1]).split(",")} & set(rooms()) - NO_PART
 
 
 @functools.cache
@@ -44,9 +62,7 @@ def contained(room: str) -> frozenset[str]:
     while waiting:
         one = waiting.pop()
         found.add(one)
-        for text in rooms()[one].values():
-            named = (name.strip() for pair in BELOW.findall(text) for name in (pair[0] or pair[1]).split(","))
-            waiting |= {name for name in named if name in rooms()} - found - NO_PART
+        waiting |= imported(one) - found
     return frozenset(found)
 
 
@@ -57,4 +73,4 @@ def fingerprint(module: str) -> str:
     room = rest.partition(".")[0]
     if top != "mpm" or room not in rooms():
         return f"other-{source_hash()}"
-    return f"{room}-{digest(rooms()[name] for name in sorted(contained(room)))}"
+    return f"{room}-{hash_of(sorted(contained(room)))}"

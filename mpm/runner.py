@@ -9,9 +9,9 @@ In dimension 0 there is neither: a material point along its loading (mpm.point).
 
 import functools
 import itertools
+import sys
 
 import numpy as np
-import scipy.linalg  # noqa: F401 - its BLAS is one of those that are limited
 from threadpoolctl import ThreadpoolController
 
 from mpm import compiling
@@ -41,7 +41,7 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
 
         compiling.expect(experiment)
         compile_ahead(experiment)
-    with blas().limit(limits=1, user_api="blas"):
+    with one_thread():
         if getattr(experiment.model, "kind", "full") == "auto":
             from mpm.reduce.choose import smallest
 
@@ -52,9 +52,14 @@ def run_point(experiment, beat=None, compare: bool = True, keeper=None, threads:
         return run_named(experiment, beat, compare, threads, keeper)
 
 
+def one_thread():
+    """Keeps BLAS to one thread: factors are small, and two threads wait for one another (the loaf by implicit steps: 36 s of processor, 3 s with one)."""
+    return blas("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas")
+
+
 @functools.cache
-def blas() -> ThreadpoolController:
-    """What keeps BLAS to one thread: factors are small, and two threads wait for one another (the loaf by implicit steps: 36 s of processor, 3 s with one)."""
+def blas(scipy: bool) -> ThreadpoolController:
+    """Of NumPy, and of SciPy once that is loaded: it brings its own."""
     return ThreadpoolController()
 
 
@@ -117,7 +122,8 @@ def run_named(experiment, beat=None, compare: bool = True, threads: int = 1, kee
             from mpm.scene.over import go_over
 
             scene.over = functools.partial(go_over, named(experiment, "updated"), exact)
-        run = physical(simulate(scene, beat, keeper), experiment)
+        with one_thread():  # SciPy is loaded by now where steps are implicit
+            run = physical(simulate(scene, beat, keeper), experiment)
         shared = scene.order.shared
     else:
         from mpm.scene.rigid import run_rigid

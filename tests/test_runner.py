@@ -1,5 +1,9 @@
 """One point from experiment to Run: what it holds, what is refused, what it is said to cost."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -106,6 +110,21 @@ def test_a_run_takes_one_thread_of_blas():
     with threadpool_limits(2, "blas"):
         mpm.run_point(mpm.load(point), beat=lambda *_: seen.append(counts()) and False)
         assert seen and all(one == {1} for one in seen) and counts() == {2}
+
+
+def test_scipy_waits_until_it_is_needed_and_takes_one_thread_too():
+    """To import it takes as long as all else that a run imports."""
+    code = """
+import sys
+import mpm.runner
+from threadpoolctl import threadpool_info
+assert not {"scipy.linalg", "scipy.optimize"} & set(sys.modules)
+import mpm.implicit.matrix
+with mpm.runner.one_thread():
+    print(sorted(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"))
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ | {"OPENBLAS_NUM_THREADS": "2"}).stdout
+    assert said == "[1, 1]\n"
 
 
 def test_compiling_ahead_is_short_where_the_end_is_a_formula(core, monkeypatch):

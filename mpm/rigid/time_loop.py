@@ -13,7 +13,6 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import brentq
 
 from mpm.memory import rows
 from mpm.outcome import BUDGET, COMPLETED, MAX_PRINCIPLE, NON_FINITE, STEP_UNDERFLOW
@@ -136,6 +135,8 @@ def judge(trace, watch, zero: float, before: int) -> None:
 
 def crossing(method, watch, before, t, dt, probe, level):
     """Time in the step at which a probe reaches a level, by the dense output."""
+    from scipy.optimize import brentq  # rare, and slow to import
+
     index, value = watch.probes[0][probe], watch.probes[1][probe]
 
     def above(s):

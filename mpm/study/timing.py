@@ -42,9 +42,9 @@ run_point(load(json.load(sys.stdin)), compare=False)
 
 def compiled_source() -> str:
     """Hash of the rooms that are compiled: what a time depends on."""
-    from mpm.fingerprint import contained, digest, rooms
+    from mpm.fingerprint import contained, hash_of
 
-    return digest(rooms()[name] for name in sorted(contained("simulation") | contained("rigid") | contained("point")))
+    return hash_of(sorted(contained("simulation") | contained("rigid") | contained("point")))
 
 
 class Stopped(Exception):
