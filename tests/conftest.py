@@ -23,6 +23,10 @@ from numba import config as numba_config
 import mpm
 from mpm import fingerprint, linking
 
+# Bytecode is written, whatever the environment says: some two hundred processes start in these tests, and each would compile the package's source anew.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # What takes longest begins first, so that workers end together: minutes of processor in an empty environment, most of them compiling.
 FIRST = (
     "tests/test_configs.py", "test_cooling.py", "test_roles.py", "test_simulation.py", "test_implicit_heat.py", "test_motion.py", "contact/test_walls.py",

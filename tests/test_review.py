@@ -132,13 +132,12 @@ def test_what_begins_after_the_end_is_told(changes, where):
     assert [text.split()[0] for text in found] == ([where] if where else [])
 
 
+@pytest.mark.plain
 def test_a_stage_of_loading_after_the_end_is_told():
-    body = {"shape": {"point": {}}, "material": "m"}
     stages = [{"strain_rate": {"zz": 0.01}, "until": 5}, {"until": 8}, {"strain_rate": {"zz": -0.01}}]
-    run = mpm.run_point(mpm.load({
-        "grid": {"dimension": 0}, "bodies": {"p": body}, "materials": {"m": {"density": 1.0, "elastic": {"hencky": {"E": 1, "nu": 0.3}}}},
-        "loading": stages, "time": {"end": 6},
-    }))  # fmt: skip
+    point, matter = {"shape": "point", "material": "m"}, {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0}}}
+    run = mpm.run_point(mpm.load(
+        {"grid": {"dimension": 0}, "bodies": {"p": point}, "materials": {"m": matter}, "loading": stages, "time": {"end": 6}}))  # fmt: skip
     assert [text.split()[1] for text in run.facts["warnings"]] == ["loading.2"]
 
 
@@ -292,6 +291,7 @@ def test_a_small_body_that_collapses_beside_a_large_one_is_told():
     assert run.outcome.ok and [text.split()[7] for text in told] == ["a"] and run.facts["volume_ratios"]["b"] > 0.9
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize(("end", "told"), [(2.0, True), (4.0, False)])
 def test_a_measured_curve_that_the_run_does_not_reach_is_told(end, told):
     """Its misfit has no value; where some of it is reached, that is compared."""

@@ -40,7 +40,7 @@ def played(experiment, threads):
     return made, {**run.series, **{f"{name} {k}": values for k, frame in enumerate(run.particles) for name, values in frame.items()}}
 
 
-@pytest.mark.parametrize(("heat", "several"), [("explicit", True), ("stabilised", False)])
+@pytest.mark.parametrize(("heat", "several"), [pytest.param("explicit", True, marks=pytest.mark.wide), ("stabilised", False)])
 def test_the_same_bits_for_any_number_of_threads(monkeypatch, heat, several):
     monkeypatch.setattr(sorting, "SHARED", 1)
     monkeypatch.setattr(sorting, "FULL", 1)

@@ -23,7 +23,7 @@ def told(run):
     return [text for text in run["facts"].get("warnings", ()) if text.startswith("narrow: ")]
 
 
-@pytest.mark.parametrize("dimension", [2, "axisymmetric"])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.wide), "axisymmetric"])
 def test_a_ball_on_a_floor_touches_over_few_cells(plain, dimension):
     """Its width is that of Hertz's contact to a cell; a block of two cells is not narrow."""
     on_floor, flat = plain([ball(dimension), dropped(dimension, 0.0, E=20.0, end=0.3)])

@@ -5,7 +5,7 @@ import pytest
 from contact_scenes import dropped
 
 H = 0.125
-ARRIVALS = (0.0, 0.3, 0.6, 1.0, 2.0)  # cells
+ARRIVALS = (0.0, 0.3, 0.6, 1.0, pytest.param(2.0, marks=pytest.mark.wide))  # cells
 
 
 def bar(gap, wall=None, E=1000.0, drag=30.0, **more):

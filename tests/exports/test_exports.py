@@ -1,6 +1,7 @@
 """Exports hold what the dataset holds, to float32: read back by the formats' own libraries where they are installed, by h5py and pandas always."""
 
 import csv
+import functools
 import subprocess
 import sys
 
@@ -24,13 +25,16 @@ SHOTS = {"every": 0.1, "grid": ["temperature", "velocity"],
 
 
 @pytest.fixture(scope="module")
-def folders(core, tmp_path_factory):
-    """A run of each dimension, by dimension."""
-    made = {}
-    for dimension in (1, 2, "axisymmetric", 3):
-        made[dimension] = tmp_path_factory.mktemp("run") / str(dimension)
+def folder(core, tmp_path_factory):
+    """A run of a dimension."""
+
+    @functools.cache
+    def made(dimension):
+        place = tmp_path_factory.mktemp("run") / str(dimension)
         moving = core.experiment(dimension, {"bodies.body.velocity": [0.1] * core.DIRECTIONS[dimension]}, output={"every": 0.1, "snapshots": SHOTS})
-        run_in(moving, made[dimension], lambda *_: False, print)
+        run_in(moving, place, lambda *_: False, print)
+        return place
+
     return made
 
 
@@ -111,12 +115,12 @@ def test_vtkhdf_of_a_line_by_h5py(core, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("dimension", [1, 2, "axisymmetric", 3])
-def test_vtk_reads_what_the_dataset_holds(folders, dimension, tmp_path):
+def test_vtk_reads_what_the_dataset_holds(folder, dimension, tmp_path):
     vtk = pytest.importorskip("vtk", reason="VTK's reader is not installed")
     from vtk.util.numpy_support import vtk_to_numpy
 
-    particles, grid = mpm.export(folders[dimension], to=tmp_path / "a.vtkhdf")
-    with Results(folders[dimension]) as found:
+    particles, grid = mpm.export(folder(dimension), to=tmp_path / "a.vtkhdf")
+    with Results(folder(dimension)) as found:
         shots = found.points()[0].shots
         for path in (particles, grid):
             reader = vtk.vtkHDFReader()
@@ -141,15 +145,15 @@ def test_vtk_reads_what_the_dataset_holds(folders, dimension, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("dimension", [2, "axisymmetric", 3])
-def test_usd_reads_what_the_dataset_holds(folders, dimension, tmp_path):
+def test_usd_reads_what_the_dataset_holds(folder, dimension, tmp_path):
     pxr = pytest.importorskip("pxr", reason="OpenUSD is not installed")
     from pxr import Usd, UsdGeom
 
     assert pxr
-    (path,) = mpm.export(folders[dimension], to=tmp_path / "a.usdc")
+    (path,) = mpm.export(folder(dimension), to=tmp_path / "a.usdc")
     stage = Usd.Stage.Open(str(path))
     points = UsdGeom.Points(stage.GetPrimAtPath("/particles"))
-    with Results(folders[dimension]) as found:
+    with Results(folder(dimension)) as found:
         shots = found.points()[0].shots
         for k, when in enumerate(shots.times):
             fields = {name: spatial(name, values, dimension) for name, values in shots[k].particles.items()}
@@ -189,9 +193,9 @@ def test_rows_are_the_same_whatever_chunks_they_lie_in(chunk, tmp_path):
             assert shots.read("a", row, int(ends[k] - sizes[k]), int(ends[k])).tolist() == list(range(ends[k] - sizes[k], ends[k]))
 
 
-def test_snapshots_of_a_run_need_no_xarray(folders, tmp_path):
+def test_snapshots_of_a_run_need_no_xarray(folder, tmp_path):
     """To import it takes longer than to write them."""
-    code = f"import sys, mpm; mpm.export({str(folders[2])!r}, to={str(tmp_path / 'a.vtkhdf')!r}); sys.exit('xarray' in sys.modules)"
+    code = f"import sys, mpm; mpm.export({str(folder(2))!r}, to={str(tmp_path / 'a.vtkhdf')!r}); sys.exit('xarray' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0 and (tmp_path / "a.vtkhdf").exists()
 
 

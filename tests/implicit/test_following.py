@@ -59,7 +59,7 @@ def test_slopes_of_what_follows(D):
 
 
 @pytest.mark.parametrize("frame", ["updated", "total"])
-@pytest.mark.parametrize("dimension", [2, pytest.param("axisymmetric", marks=pytest.mark.wide), pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("dimension", [pytest.param(each, marks=pytest.mark.slow if each == 3 else pytest.mark.wide) for each in FREE])
 def test_a_floating_body_that_a_pressure_squeezes(dimension, frame):
     """By a tenth in every direction and by a tenth the other way, at once and in one step: K_n e = -p J everywhere, and it stays where it is."""
     n = 2 if dimension == 2 else 3
@@ -74,6 +74,7 @@ def test_a_floating_body_that_a_pressure_squeezes(dimension, frame):
             assert [run.finals["position_max_x"], run.finals["position_min_y"]] == pytest.approx([0.12 + 0.05 * np.exp(e), 0.11 - 0.05 * np.exp(e)], abs=1e-6)
 
 
+@pytest.mark.wide
 def test_rest_under_a_pressure_knows_no_steps():
     """A block on a floor that sticks, its top pressed by 0.17 E, free beside it: in one step or four, and Newton's method closes in at once."""
     on_floor = {"bodies": {"body": {"shape": {"box": {"lower": [0.05, 0], "upper": [0.15, 0.1]}}, "material": "dough"}}, "walls": {"bottom": "stick"}}

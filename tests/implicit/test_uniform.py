@@ -41,7 +41,7 @@ def test_a_free_body_swells_at_once(dimension):
 
 
 @pytest.mark.plain
-@pytest.mark.parametrize("dimension", [2, "axisymmetric"])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.wide), "axisymmetric"])
 def test_a_pressure_squeezes_alike(dimension):
     """Between mirrors, under a pressure on the surface as it is: K_n e = -p J everywhere once areas are their own."""
     n, e = (2, -0.03) if dimension == 2 else (3, -0.03)

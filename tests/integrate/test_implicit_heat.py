@@ -112,7 +112,7 @@ FLAT = {
 }
 
 
-@pytest.mark.parametrize("law", ["bump", pytest.param("table", marks=pytest.mark.slow), pytest.param("logistic", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("law", [pytest.param(law, marks=pytest.mark.wide if law == "bump" else pytest.mark.slow) for law in FLAT])
 def test_a_constant_law_by_way_of_enthalpy_is_the_constant(core, law):
     """A bump of no heat, a table of one value: the nonlinear step has nothing to do, and gives what the linear one gives."""
     for heat in (IMPLICIT, SECOND, EXPLICIT, {"stabilised": {}}):

@@ -33,7 +33,7 @@ def run_of(data, **over):
     return run
 
 
-@pytest.mark.parametrize("dimension", [1, 2, "axisymmetric", 3])
+@pytest.mark.parametrize("dimension", [1, 2, "axisymmetric", pytest.param(3, marks=pytest.mark.wide)])
 def test_a_stream_without_weight_keeps_its_speed_and_bears_no_stress(dimension):
     run = run_of(config(dimension))
     come, axis = 2.0 * AREA[dimension] * 0.5 * 0.6, {1: "x", 2: "y"}.get(dimension, "z")

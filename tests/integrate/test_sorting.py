@@ -116,7 +116,7 @@ def throw(p):
     p.x[7], p.v[7] = 1.9, 60.0
 
 
-@pytest.mark.parametrize("how", [spoil, throw], ids=["before a step", "in a step"])
+@pytest.mark.parametrize("how", [pytest.param(spoil, id="before a step"), pytest.param(throw, id="in a step", marks=pytest.mark.wide)])
 def test_a_failure_names_the_particle_by_its_own_number(core, small, how):
     def prepare(scene):
         shuffled(scene)

@@ -127,7 +127,7 @@ def test_from_a_config():
             mpm.load(config({"of": "slab", "convection": {"beta": 1, "outside": 400}, **wrong}))
 
 
-@pytest.mark.parametrize("heat", ["implicit", "explicit"])
+@pytest.mark.parametrize("heat", ["explicit", pytest.param("implicit", marks=pytest.mark.wide)])
 def test_flip_of_a_body_that_could_move(exact, heat):
     """The same by particles: heat steps end on the jump; 0.2 % of the range at 32 cells."""
     beta = {"table": {"time": [0, FLIP, FLIP, END], "value": [HOT[0], HOT[0], COOL[0], COOL[0]]}}

@@ -53,7 +53,7 @@ def test_heat_through_an_edge_is_its_length_and_its_place(turn, moves):
 
 
 @pytest.mark.plain
-@pytest.mark.parametrize("frame", ["updated", "total"])
+@pytest.mark.parametrize("frame", ["updated", pytest.param("total", marks=pytest.mark.wide)])
 @pytest.mark.parametrize("turn", [1, pytest.param(-1, marks=pytest.mark.wide)])
 def test_a_traction_on_an_edge_pushes_by_its_length(turn, frame):
     for edge, length in (("edge 2", 0.01), ("edge 3", 0.02)):

@@ -43,7 +43,7 @@ def stretched(scene, F):
 
 @pytest.mark.parametrize(
     ("dimension", "F"),
-    [pytest.param(1, [[1.3]], marks=pytest.mark.plain), (2, [[1.3, 0.0], [0.0, 0.7]]), pytest.param(2, [[0.0, -0.7], [1.3, 0.0]], marks=pytest.mark.wide)],
+    [pytest.param(1, [[1.3]], marks=pytest.mark.plain), *(pytest.param(2, F, marks=pytest.mark.wide) for F in ([[1.3, 0], [0, 0.7]], [[0, -0.7], [1.3, 0]]))],
 )
 def test_conduction_and_exchange_of_a_stretched_body(dimension, F):
     """Drawn 1.3 along and pressed 0.7 across, also turned by a quarter: in the reference shape the diffusivity along is k J/1.3^2 and beta acts on 0.7 of
