@@ -6,6 +6,7 @@ compiling their physics would take twenty. tests/test_roles.py holds compiled an
 
 import copy
 import csv
+import gc
 import json
 import os
 import subprocess
@@ -157,6 +158,12 @@ def within_its_rooms(kernel, function):
 
 
 linking.listeners.append(within_its_rooms)
+
+
+def pytest_collection_finish():
+    """What was imported and collected lives to the end: the garbage collector need not look through it again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(items):

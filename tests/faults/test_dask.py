@@ -21,6 +21,7 @@ def dask(tmp_path):
     made.close()
 
 
+@pytest.mark.wide
 def test_a_killed_worker_costs_what_it_ran(tmp_path, marks, dask):
     dask.scheduler()
     workers = [dask.worker(), dask.worker()]
