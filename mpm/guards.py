@@ -124,6 +124,7 @@ class Guards:
         if math.isnan(self.begun):
             self.begun = now["energy_total"]
         gained = now["energy_total"] - self.begun
+        gained -= 2 * scene.meeting.parted if scene.meeting is not None else 0.0  # velocities of now may hold one push more than is counted
         if self.judged and gained > self.growth * self.most and gained > 1e-12 * abs(self.begun) + self.least:
             said = f"(more than at the start by {100 * gained / self.most:.0f} % of the largest)"
             return outcome(ENERGY_GROWTH, time=clock.time * scene.scale, step=clock.steps, detail=said)

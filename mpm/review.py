@@ -31,7 +31,7 @@ import numpy as np
 
 from mpm.guards import ROUNDED
 from mpm.materials import value
-from mpm.records.variables import describe
+from mpm.records.variables import describe, turn
 from mpm.rigid.touching import TOUCH
 from mpm.scene.bearing import lying
 from mpm.scene.exchange import most, programme
@@ -186,6 +186,8 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
         return
     gone, moved = run.series["dissipation_transfer"], run.facts.get("moved", 0.0)
     worst, most = float(gone[np.argmax(np.abs(gone))]), max(turned_over(run.series), moved)
+    if worst < 0:  # what overlapped was pushed apart (mpm.contact.overlap)
+        worst = min(0.0, worst + turn(experiment.grid.dimension) * run.facts.get("parted", 0.0))
     implicit = experiment.method.mechanics == "implicit"
     slow = implicit and worst > 0 and moved <= ENERGY * most  # long steps damp what moves: that is what they are for
     if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run) and not slow:

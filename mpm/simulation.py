@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm.contact import narrow, stretched
+from mpm.contact import narrow, overlap, stretched
 from mpm.contact.block import advance_block, clear, work_arrays
 from mpm.contact.insync import in_sync
 from mpm.guards import Guards, explain, outgrown
@@ -189,9 +189,10 @@ def simulate(scene: Scene, beat=None, keeper=None) -> Run:
         clock.output += 1
     show_all(scene)
     run = recorder.run(scene, clock, explain(result, scene, clock), clock.spent + time.perf_counter() - began)
-    looks = () if scene.meeting is None else (stretched,) if scene.implicit is not None else (stretched, narrow)
+    looks = () if scene.meeting is None else (overlap, stretched) if scene.implicit is not None else (overlap, stretched, narrow)
     warned = [*guards.warned, *(said for look in looks for said in look.warned(scene.meeting))]
     run.facts |= {"warnings": warned} if warned else {}
+    run.facts |= {"parted": scene.meeting.parted} if scene.meeting is not None and scene.meeting.parted else {}
     run.facts |= {"over": clock.told["over"]} if "over" in clock.told else {}
     return run
 

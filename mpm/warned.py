@@ -25,6 +25,7 @@ KINDS = {
     "narrow": "smaller cells, or trust its force alone: over the way it is off by a tenth or so, and pressure and area mean nothing",
     "bend": "`method.frame: total`; where that is refused, `method.gradient: bspline` and `method.particles: 4`",
     "pieces": "smaller cells, or weld the two: beyond three times they may enter each other between the pieces of their surfaces",
+    "overlap": "let nothing come or grow within another; until they are apart, the force between them and the energy that it gives mean nothing",
 }
 
 

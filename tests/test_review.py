@@ -263,7 +263,7 @@ def test_what_bends_far_in_the_updated_frame(changes, cells, told):
 def test_every_kind_is_raised_somewhere():
     """Those that only a running scene sees: test_guards.py, test_scaling.py, test_guarded.py, test_narrow.py, test_stretched.py."""
     assert set(LOOKS) == {*PAIRS, "heat", "probe", "depth", "near", "late", "ring", "bend"}
-    assert set(LOOKS) | {"temperature", "inertia", "torn", "traction", "narrow", "pieces"} == set(KINDS)
+    assert set(LOOKS) | {"temperature", "inertia", "torn", "traction", "narrow", "pieces", "overlap"} == set(KINDS)
 
 
 def test_expansion_explains_volume(core):

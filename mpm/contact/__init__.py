@@ -31,4 +31,5 @@ Further files
     links      where heat passes between bodies
     stretched  how far the surfaces of a pair have grown, for a warning
     narrow     how many cells a contact is wide, for a warning
+    overlap    how far what meets has entered each other, for a warning
 """

@@ -5,21 +5,22 @@ import numpy as np
 from mpm.contact.found import BODY
 
 
-def series(met, axes: tuple[str, ...], since: float, time: float):
-    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record, at `time` [s].
+def series(met, axes: tuple[str, ...], since: float, span: float, time: float):
+    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record impulses have acted, and steps have gone
+    on for `span`, to `time` [s].
 
         force    on bodies by a wall or tool; on the first of a pair by the second
         travel   of a tool since the start
     torque   of that force about a tool's centre, and about the origin of coordinates else
     """
     touching, B = met.touching, len(met.names)
-    part = 1.0 / since if since > 0.0 else 0.0
+    part, share = (1.0 / one if one > 0.0 else 0.0 for one in (since, span))
     for k, (side, tool) in enumerate([*((side, None) for side in met.sides), *((None, name) for name in met.tool_names)]):
         at = k if tool is None else BODY + B + k - len(met.sides)
         if tool is None and not (met.stops.reshape(B, 6)[:, k] >= 0).any():
             continue
         yield from obstacle_series(side or tool, axes, part * touching.pushed[:, at].sum(axis=0), part * touching.turned[:, at].sum(axis=0),
-                        part * touching.spread[:, at].sum())  # fmt: skip
+                        share * touching.spread[:, at].sum())  # fmt: skip
         if tool is not None:
             moved = met.drive.displacement(met.tool_names.index(tool), time)
             yield from ((f"travel_{tool}_{axis}", moved[k]) for k, axis in enumerate(axes))
@@ -27,7 +28,7 @@ def series(met, axes: tuple[str, ...], since: float, time: float):
         for b in range(a + 1, B):
             both = f"{met.names[a]}_{met.names[b]}"
             if met.pairs[a, b] >= 0:
-                area = 0.5 * part * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
+                area = 0.5 * share * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
                 yield from obstacle_series(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
             if met.passing[a, b]:
                 yield f"heat_{both}", met.passed[a, b]

@@ -7,7 +7,7 @@ import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.blocks import new_blocks
-from mpm.contact import books, narrow, stretched
+from mpm.contact import books, narrow, overlap, stretched
 from mpm.contact.conduct import FIELDS, conduct_together
 from mpm.contact.drive import Drive
 from mpm.contact.found import BODY
@@ -30,7 +30,7 @@ from mpm.state import PAD, Surface, Thermal
 from mpm.transfer import columns, wants_change
 
 SLACK = 0.15  # cells beyond which nothing acts: gaps closer than SURE are in the sweeps
-KEPT = ("warm", "touched", "pushed", "turned", "spread", "deepest", "worked", "rubbed")  # of Touching, by a run that goes on
+KEPT = ("warm", "touched", "pushed", "turned", "spread", "deepest", "worked", "rubbed", "parted")  # of Touching, by a run that goes on
 
 
 @dataclass
@@ -52,10 +52,12 @@ class Meeting:
     passed: np.ndarray = field(init=False)  # (B, B) heat that a body took in from each other since the start [J]
     hardest: np.ndarray = field(init=False)  # (B, K, 2) largest force of each body on what it meets, and how many cells it touches there (narrow.py)
     grown: np.ndarray = field(init=False)  # (B, B) by how much the surfaces of a pair that presses have grown, the smaller of the two (stretched.py)
+    entered: np.ndarray = field(init=False)  # (B, K) largest overlap of each body with what it meets [m] (overlap.py)
     passing: np.ndarray = field(init=False)  # (B, B) whether heat ever passes between two bodies; links may be 0 for a while (mpm.contact.course)
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
-    told: float = field(default=0.0, init=False)  # up to when impulses were recorded [s]
+    told: float = field(default=0.0, init=False)  # up to when impulses were recorded, and touch [s]
+    shown: float = field(default=0.0, init=False)
     left: float = field(default=-1.0, init=False)  # how far anything may still move before something can be near [m]
     buffers: tuple | None = field(default=None, init=False)
     scratch: np.ndarray | None = field(default=None, init=False)
@@ -72,9 +74,10 @@ class Meeting:
         pairs = Pairs(self.pairs) if B > 1 else NoPairs()
         held = Held(np.array([self.held[self.fields == f].all() for f in range(F)])) if self.stands else NotHeld()
         self.touching = Touching(first, self.fields, walls, self.stops, pairs, tools, rows, np.zeros((P, R, D)), np.zeros((P, R)), np.zeros((B, K, D)),
-                                 np.zeros((B, K, 3)), np.zeros((B, K)), *np.zeros((3, 1)), np.full(n, -1),
+                                 np.zeros((B, K, 3)), *np.zeros((2, B, K)), *np.zeros((3, 1)), np.full(n, -1),
                                  np.array([P // 4 + 64]), held)  # fmt: skip
         self.passed, self.passing, self.hardest, self.grown = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2)), np.zeros((B, B))
+        self.entered = np.zeros((B, K))
 
     @property
     def tool_names(self) -> tuple[str, ...]:
@@ -87,7 +90,7 @@ class Meeting:
 
     def memory(self) -> dict:
         """What a run that goes on needs (mpm.memory)."""
-        own = {name: getattr(self, name) for name in ("left", "told", "passed", "hardest", "grown")}
+        own = {name: getattr(self, name) for name in ("left", "told", "shown", "passed", "hardest", "grown", "entered")}
         return {name: getattr(self.touching, name) for name in KEPT} | own | self.free()
 
     def free(self) -> dict:
@@ -96,10 +99,10 @@ class Meeting:
 
     def recall(self, found: dict) -> None:
         """As it was when `memory` was kept."""
-        self.left, self.told = found["left"], found["told"]
+        self.left, self.told, self.shown = found["left"], found["told"], found["shown"]
         for name in KEPT:
             getattr(self.touching, name)[...] = found[name]
-        for name in ("passed", "hardest", "grown"):
+        for name in ("passed", "hardest", "grown", "entered"):
             getattr(self, name)[...] = found[name]
         for name, array in self.free().items():
             array[...] = found[name]
@@ -127,12 +130,18 @@ class Meeting:
         """Work that friction has taken since the start [J]."""
         return float(self.touching.rubbed[0])
 
+    @property
+    def parted(self) -> float:
+        """Work that pushed apart what overlapped since the start [J]."""
+        return float(self.touching.parted[0])
+
     def series(self, axes: tuple[str, ...], now: float, time: float):
         """(dataset name, value) of forces and heat: see mpm.contact.books. `now`: up to when impulses have acted, at positions of `time` [s]."""
-        since, self.told = now - self.told, now
+        since, span, self.told, self.shown = now - self.told, time - self.shown, now, time
         narrow.look(self, since)
+        overlap.look(self)
         stretched.look(self)
-        return books.series(self, axes, since, time)
+        return books.series(self, axes, since, span, time)
 
     def texture(self, tool: str, axes: tuple[str, ...], series) -> dict[str, float]:
         """Of the bites of a tool, along the direction in which it moves most."""

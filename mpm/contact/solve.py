@@ -101,6 +101,12 @@ def press(space, problem, dt, sound, warm, rows):
             break
 
 
+@kernel(inline=True)
+def apart(gap, dt, sound):
+    """How fast what overlaps is pushed apart [m/s]; 0 of a gap."""
+    return min(max(-gap, 0.0) / dt, PUSH * sound)
+
+
 @kernel
 def ready(space, problem, some, dt, warm, rows, inverse):
     """1/A of the contacts some[0] <= i < some[1] that bore an impulse, or are so near that they might; the others' stays zero."""

@@ -13,7 +13,7 @@ from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import pose, press, settle, speed
+from mpm.contact.solve import apart, pose, press, settle, speed
 from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
@@ -42,9 +42,10 @@ class Touching(NamedTuple):
     pushed: np.ndarray  # (B, K, D) impulse on each body since the last record [kg m/s]
     turned: np.ndarray  # (B, K, 3) its moment about a tool's centre, or the origin of coordinates [kg m2/s]
     spread: np.ndarray  # (B, K) area in touch times time since the last record [m2 s]
-    deepest: np.ndarray  # (1,) largest overlap since the last record [m]
+    deepest: np.ndarray  # (B, K) largest overlap since the last record [m]
     worked: np.ndarray  # (1,) work of tools on bodies since the start [J]
     rubbed: np.ndarray  # (1,) work that friction has taken since the start [J]
+    parted: np.ndarray  # (1,) work that pushed apart what overlapped since the start [J]
     number: np.ndarray  # (nodes,) scratch, -1
     room: np.ndarray  # (1,) contacts to make room for
     held: Any  # Held or NotHeld
@@ -138,16 +139,16 @@ def resolve(method, touching, skin, grids, now, pace, near):
     (contacts, count, weights), space, nodes = near, method.space, grids.nodes[:, now]
     problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
     press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows)
-    finish(method, touching, skin, grids, now, pace.dt, problem)
+    finish(method, touching, skin, grids, now, pace, problem)
 
 
 @kernel
-def finish(method, touching, skin, grids, now, dt, problem):
+def finish(method, touching, skin, grids, now, pace, problem):
     """Nodes and books after the impulses are found."""
     space, nodes, force = method.space, grids.nodes[:, now], grids.force[:, now]
     D, shape = directions(space), extents(space)
     settle(space, problem, nodes, force)
-    if keep_books(space, touching, skin, problem, dt):
+    if keep_books(space, touching, skin, problem, pace):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
             if wants_change(method.scheme):
@@ -155,11 +156,11 @@ def finish(method, touching, skin, grids, now, dt, problem):
 
 
 @kernel
-def keep_books(space, touching, skin, problem, dt):
+def keep_books(space, touching, skin, problem, pace):
     """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
     D, B, pressed, contacts, impulse = directions(space), len(touching.first) - 1, False, problem.contacts, problem.impulse
     way, moment, still, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(WIDE)
-    touching.warm[:] = 0.0
+    touching.warm[:], dt = 0.0, pace.dt
     for i in range(len(impulse)):
         s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
         a, b, to = contacts.body[i, 0], contacts.body[i, 1], contacts.against[i]
@@ -184,7 +185,8 @@ def keep_books(space, touching, skin, problem, dt):
             if b >= 0:
                 touching.turned[b, BODY + a, c] -= moment[c]
         pressed = pressed or along > 0.0
-        touching.deepest[0] = max(touching.deepest[0], -contacts.gap[i])
+        touching.parted[0] += along * apart(contacts.gap[i], pace.ahead, pace.sound)
+        touching.deepest[a, to] = max(touching.deepest[a, to], -contacts.gap[i])
         if contacts.balanced[i, 0] and (along > 0.0 or contacts.gap[i] <= TOUCH * space.h):
             touching.touched[s, row] += dt
             touching.spread[a, to] += skin.area[s] * dt

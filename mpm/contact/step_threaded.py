@@ -37,7 +37,7 @@ def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
             weights = weigh_in_slabs(scene, touching, skin, (contacts, count), nodes, slabs, crew)
             problem = pose(scene.space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
             press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, slabs, crew)
-            finish(method, touching, skin, grids, now, pace.dt, problem)
+            finish(method, touching, skin, grids, now, pace, problem)
         after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, slabs.reports[-1])
 
     return steps_in_slabs(scene, method, grids, touching.fields, between, (pace.dt, pace.kick, pace.steps, pace.begun), True, reports)

@@ -182,5 +182,5 @@ def keep_books(scene, nodes, pushed: Pushed, u: np.ndarray, depth: np.ndarray, d
     touching.worked[0] += work
     along = np.sum(force * pushed.normal, axis=1)[:, None] * pushed.normal
     touching.rubbed[0] -= np.sum((force - along) * slip)
-    touching.deepest[0] = max(touching.deepest[0], float(depth.max(initial=0.0)))
+    np.maximum.at(touching.deepest[0], pushed.against, depth)
     return work
