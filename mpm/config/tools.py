@@ -46,7 +46,9 @@ class Motion(Spell):
     path: Path | None = doc(None, description="displacements over time")
     spin: Annotated[float | tuple[AngularVelocity, ...], Spin()] | None = doc(None, description="about the middle of its box: a number in 2-D, three in 3-D")
     force: tuple[Force, ...] | None = doc(
-        None, description="pushes the tool, weight and all, along its own line only; as 1-D and 2-D scenes count it, by area or depth"
+        None,
+        description="pushes the tool, weight and all, along its own line only, between `from` and `until`; it stands before and after; as 1-D and 2-D scenes "
+        "count it, by area or depth",
     )
     mass: Mass | None = doc(None, description="of a tool that a force pushes; as 1-D and 2-D scenes count it, by area or depth")
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from mpm.contact.found import BODY
+from mpm.state import Thermal
 
 
 def series(met, axes: tuple[str, ...], since: float, span: float, time: float):
@@ -30,7 +31,7 @@ def series(met, axes: tuple[str, ...], since: float, span: float, time: float):
             if met.pairs[a, b] >= 0:
                 area = 0.5 * share * (touching.spread[a, BODY + b] + touching.spread[b, BODY + a])
                 yield from obstacle_series(both, axes, part * touching.pushed[a, BODY + b], part * touching.turned[a, BODY + b], area)
-            if met.passing[a, b]:
+            if isinstance(met.bodies[a].thermal, Thermal) and isinstance(met.bodies[b].thermal, Thermal):
                 yield f"heat_{both}", met.passed[a, b]
     for gathered in (touching.pushed, touching.turned, touching.spread, touching.deepest):
         gathered[:] = 0.0

@@ -215,7 +215,7 @@ class Meeting:
         """One block of steps from `time` on in which something may be near; the nodes of a single field are `buffers`. Whether a chunk was late."""
         grids = Grids(*(self.apart(scene) if len(self.touching.walls) > 1 else (array[None] for array in buffers)))
         if self.drive is not None:
-            self.drive.lay(time, pace.ahead, pace.steps)
+            self.drive.lay(time, pace.ahead, pace.steps, pace.kick - 0.5 * pace.dt)
         if scene.order.sliced:
             return advance_touching_slabs(scene, self.touching, grids, pace, reports)
         advance_touching(method_of(scene), scene.for_motion, self.touching, grids, scene.gravity, pace, reports)

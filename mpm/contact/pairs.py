@@ -1,8 +1,9 @@
 """Bodies that may meet, and the contacts of a piece with the faces of another body.
 
 Over the faces t of B within REACH that look at piece s (n_t . n_s < FACING, corners CORNER), weights q_t = (1 - r/REACH)^2 S_t:
-n = sum q n_t, normalised;  g = n . (x_s - sum q x_t/sum q);  the point of B is x_s - g n, on the particle of the nearest t;
-none where that lies beside t, past the edge of B.
+n = sum q n_t, normalised;  g = sum q (n + n_t)/2 . (x_s - x_t)/sum q;  the point of B is x_s - g n, on the particle of the nearest t;
+none where that lies beside t, past the edge of B. A chord of a circle, or of a sphere, is at right angles to the mean of the normals at its ends: with n alone
+round faces stood off, and hollow ones overlapped, by (h/2)^2/(2 R) and more.
 """
 
 from typing import NamedTuple
@@ -77,7 +78,7 @@ def find_pairs_pairs(pairs, space, skin, found, count, within):
         for other in range(B):
             if mu[b, other] < 0.0:
                 continue
-            weight, nearest, t = 0.0, 1e300, -1
+            weight, nearest, t, beyond = 0.0, 1e300, -1, 0.0
             for a in range(D):
                 normal[a] = middle[a] = 0.0
             for i in range(max(cell[0] - 1, 0), min(cell[0] + 2, size[0])):
@@ -100,6 +101,7 @@ def find_pairs_pairs(pairs, space, skin, found, count, within):
                             for a in range(D):
                                 normal[a] += q * skin.normal[c, a]
                                 middle[a] += q * skin.x[c, a]
+                                beyond += q * skin.normal[c, a] * (skin.x[s, a] - skin.x[c, a])
                             if square < nearest:
                                 nearest, t = square, c
             if t < 0:
@@ -109,7 +111,8 @@ def find_pairs_pairs(pairs, space, skin, found, count, within):
                 length += normal[a] ** 2
             for a in range(D):
                 normal[a] /= length**0.5
-                gap += normal[a] * (skin.x[s, a] - middle[a] / weight)
+                gap += 0.5 * normal[a] * (skin.x[s, a] - middle[a] / weight)
+            gap += 0.5 * beyond / weight
             along, beside = 0.0, 0.0
             for a in range(D):
                 point[a] = skin.x[s, a] - gap * normal[a]

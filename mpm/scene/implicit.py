@@ -10,10 +10,11 @@ FIRST = 0.01  # of a run: its first step, at most an output interval and the pac
 
 
 def kinks(experiment, met) -> tuple[float, ...]:
-    """Times at which a tool goes another way, comes or leaves: a step of seconds ends there, where explicit ones pass over."""
-    if experiment.method.mechanics != "implicit" or met is None or met.drive is None:
+    """Times at which a tool goes another way, comes or leaves: a step of seconds ends there. Explicit ones pass over, but where a force sets in or ends."""
+    if met is None or met.drive is None:
         return ()
-    return tuple(sorted({float(when) for one in met.drive.told for when in (*one.times, *one.turning, *one.there) if 0 < when < experiment.time.end}))
+    told = met.drive.told if experiment.method.mechanics == "implicit" else [one for one in met.drive.told if one.light]
+    return tuple(sorted({float(when) for one in told for when in (*one.times, *one.turning, *one.there) if 0 < when < experiment.time.end}))
 
 
 def implicit(experiment, space, bodies, references, met, times):

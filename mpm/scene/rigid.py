@@ -91,7 +91,7 @@ def run_rigid(experiment, exact=None, beat=None, compare: bool = True, keeper=No
     series |= look.errors(solved.snapshots, shift, len(solved.times))
     masses = matter(experiment) if {name.partition(".")[0] for name in experiment.output.observables} & {"mass", "volume"} else []
     asked = {dataset_name(name) for name in experiment.output.observables} & {"mass_total", "volume_total"}
-    series |= {name: np.full(len(solved.times), sum(one[name] for one in masses)) for name in sorted(asked)} | of_bodies(experiment, solved, masses)
+    series |= {name: np.full(len(solved.times), sum(one[name] for one in masses)) for name in sorted(asked)} | of_bodies(experiment, solved, masses, together)
     finals = {name: float(values[-1]) for name, values in series.items()}
     finals |= {name: solved.crossings[at.probe, at.kelvin] for name, at in found.items()}
     finals["steps"] = float(solved.steps)
@@ -118,8 +118,8 @@ def matter(experiment) -> list[dict[str, float]]:
     return found
 
 
-def of_bodies(experiment, solved, masses) -> dict[str, np.ndarray]:
-    """Series of one body that are asked for, and the heat that the first body of each pair has taken from the second."""
+def of_bodies(experiment, solved, masses, joints) -> dict[str, np.ndarray]:
+    """Series of one body that are asked for, and the heat that the first body of each pair that touches has taken from the second."""
     from mpm.records.variables import dataset_name, single
 
     names, count, found = list(experiment.bodies), len(solved.times), {}
@@ -128,7 +128,8 @@ def of_bodies(experiment, solved, masses) -> dict[str, np.ndarray]:
             b, own = names.index(one[1]), {"heat_total": "heat"}.get(one[0], one[0].replace("_", ".", 1))
             constant = masses[b].get(one[0], np.nan) if masses else np.nan
             found[dataset_name(told)] = solved.of[b].get(own, np.full(count, constant))
-    return found | {f"heat_{names[a]}_{names[b]}": -flow for (a, b), flow in solved.passed.items()}
+    flows = {(joint.first, joint.second): np.zeros(count) for joint in joints} | {pair: -flow for pair, flow in solved.passed.items()}
+    return found | {f"heat_{names[a]}_{names[b]}": flow for (a, b), flow in flows.items()}
 
 
 class Looks:

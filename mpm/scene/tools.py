@@ -56,7 +56,7 @@ def drive(experiment) -> Drive | None:
             tools.force[t], tools.light[t] = tool.motion.force, 1.0 / tool.motion.mass
             tools.way[t] = tools.force[t] / np.linalg.norm(tools.force[t])
         told.append(Told(name, *path(tool.motion, centre, experiment.time.end), spin=spin(tool.motion, D),
-                         turning=spell(tool.motion), there=spell(tool)))  # fmt: skip
+                         turning=spell(tool.motion), there=spell(tool), light=float(tools.light[t])))  # fmt: skip
     return Drive(tuple(told), tools)
 
 

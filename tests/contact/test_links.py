@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from contact_scenes import conducting
 
+import mpm
 from mpm.contact.conduct import Linked
 from mpm.integrate.heat_matrix import Rows, conjugate_gradients
 
@@ -28,3 +30,14 @@ def test_one_loop_solves_bodies_alone_and_linked():
             whole[block[0], 1] += stiff * way[block[0]] * way[block[1]]
         assert conjugate_gradients(Linked(rows, whole, at, t, np.array([stiff])), columns, between, weight, b.copy(), found, 1e-12) >= 1
         assert found == pytest.approx(np.linalg.solve(A + stiff * np.outer(way, way), b), rel=1e-8)
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_a_pair_that_passes_no_heat_tells_so(moves):
+    """`conductance: 0` of a sweep: heat.hot_cold is 0. It was refused as asked for and not told."""
+    scene = conducting(1, 8, 0.0)
+    scene["output"]["observables"] = ["heat.hot_cold"]
+    if not moves:
+        del scene["materials"]["m"]["elastic"]
+    run = mpm.run_point(mpm.load(scene))
+    assert run.outcome.ok and np.all(run.series["heat_hot_cold"] == 0.0) and len(run.series["heat_hot_cold"]) == 6

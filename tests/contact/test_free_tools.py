@@ -1,0 +1,38 @@
+"""Tools that a force moves, where nothing is near, and for a while: flight by Newton's law to rounding."""
+
+import numpy as np
+import pytest
+
+
+def weighed(low, velocity=0.0, **motion):
+    """A bar of one metre on a wall, or free, and a weight of 1 kg before it."""
+    return {
+        "grid": {"dimension": 1, "size": [4.0], "cell": 0.125},
+        "bodies": {"bar": {"shape": {"box": {"lower": [0.53], "upper": [1.53]}}, "material": "m", "velocity": [velocity]}},
+        "materials": {"m": {"density": 1.0, "elastic": {"hencky": {"E": 1.0, "nu": 0.0}}}},
+        "tools": {"weight": {"shape": {"box": {"lower": [low], "upper": [low + 0.9]}}, "motion": motion}},
+        "time": {"end": 1.5}, "output": {"every": 0.05},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("low", [2.9, 1.6])
+def test_a_weight_falls(plain, low):
+    """From far, where it stood still, and from half a cell: F t^2/(2 M); between `from` and `until`, which no output time shares, and else not."""
+    force = {"force": [-0.1], "mass": 1.0}
+    free, held = plain([weighed(low, **force), weighed(low, **force, **{"from": 0.212, "until": 0.712})])
+    t = free["times"]
+    fly = t < np.sqrt(2 * (low - 1.531) / 0.1)
+    assert free["series"]["travel_weight_x"][fly] == pytest.approx(-0.05 * t[fly] ** 2, abs=1e-14) and fly.sum() > 20
+    moved = np.clip(t - 0.212, 0.0, 0.5)
+    assert held["series"]["travel_weight_x"] == pytest.approx(-0.05 * moved**2, abs=1e-14)
+
+
+def test_a_bar_that_hits_a_free_tool(plain):
+    """Momentum of both, also once they are apart: a rigid mass leaves with 1 - exp(-2 Z L/(c M)) of the bar's speed, as its wave is back then."""
+    scene = weighed(1.6, 0.01, force=[1e-12], mass=1.0)
+    scene["time"]["end"], scene["output"]["every"] = 16.0, 0.5
+    (run,) = plain([scene])
+    s, t = run["series"], run["times"]
+    speed = np.diff(s["travel_weight_x"])[-8:] / np.diff(t)[-8:]
+    assert s["momentum_x"][-8:] + speed == pytest.approx(0.01, rel=1e-6)
+    assert speed == pytest.approx(0.01 * (1 - np.exp(-2.0)), rel=0.07)
