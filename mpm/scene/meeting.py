@@ -170,7 +170,7 @@ def behind(experiment, name: str, axis: int, upper: int) -> bool:
 
 
 def reach(experiment, name: str, low, high) -> np.ndarray:
-    """How far a body could come towards either side of each direction within the run (D, 2) [m]: thrown, falling, or by changing its shape."""
+    """How far a body could come towards either side of each direction within the run (D, 2) [m]: thrown, falling, pushed by tools, or by changing its shape."""
     end, size = experiment.time.end, float(np.max(high - low))
     body, material = experiment.bodies[name], experiment.materials[experiment.bodies[name].material]
     speed = max(math.hypot(*(one.velocity or (0.0,))) + (spun(one) if len(experiment.bodies) > 1 else 0.0) for one in experiment.bodies.values())
@@ -179,9 +179,23 @@ def reach(experiment, name: str, low, high) -> np.ndarray:
     if body.inflow is not None or (g.any() and material.flow is not None):
         return np.full((len(low), 2), math.inf)
     swells = material.flow is not None or getattr(material.expansion, "kind", "") == "latched"
-    stirred = g.any() or speed or loaded or material.expansion is not None or body.angular_velocity is not None
+    pushed = carried(experiment)
+    stirred = g.any() or speed or loaded or pushed or material.expansion is not None or body.angular_velocity is not None
     shapes = (2.0 if swells else 0.5) * size if stirred else 0.0
-    return shapes + speed * end + 0.5 * end * end * g
+    return shapes + speed * end + pushed + 0.5 * end * end * g
+
+
+def carried(experiment) -> float:
+    """How far a tool could take what it pushes within the run [m]; endless where a force moves it."""
+    far, end = 0.0, experiment.time.end
+    for tool in experiment.tools.values():
+        move = tool.motion
+        lasts = max(0.0, (end if move.until is None else min(move.until, end)) - getattr(move, "from"))
+        low, high = shape(tool.shape, experiment.grid.dimension).bounds()
+        ways = [math.dist(x, move.path.displacement[0]) for x in move.path.displacement] if move.path is not None else [0.0]
+        turned = 0.0 if move.spin is None else float(np.linalg.norm(move.spin)) * math.dist(low, high) * lasts
+        far = max(far, math.inf if move.force is not None else max(ways) + math.hypot(*(move.velocity or (0.0,))) * lasts + turned)
+    return far
 
 
 def spun(body) -> float:

@@ -125,7 +125,7 @@ def refuse_tools(experiment, names, outlines) -> None:
     refuse_through(experiment, names, outlines, told)
     slowest = min(FAST * sound(experiment.materials[experiment.bodies[name].material]) for name in names)
     for t, name in enumerate(experiment.tools):
-        if told.fastest(t, 0.0, experiment.time.end) > slowest and told.tools.light[t] == 0.0:
+        if told.fastest(t, 0.0, experiment.time.end) > slowest * (1 + 1e-9) and told.tools.light[t] == 0.0:
             said = f"a place on it goes {told.fastest(t, 0.0, experiment.time.end):.3g} m/s, over {FAST:g} of the speed of sound of what it meets"
             raise SceneError(("tools", name, "motion"), f"{said}: take at most {slowest:.3g} m/s")
 

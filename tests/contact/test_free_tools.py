@@ -1,14 +1,14 @@
-"""Tools that a force moves, where nothing is near, and for a while: flight by Newton's law to rounding."""
+"""Tools that a force moves, where nothing is near, and for a while: flight by Newton's law to rounding. What a tool pushes meets what lies in its way."""
 
 import numpy as np
 import pytest
 
 
-def weighed(low, velocity=0.0, **motion):
+def weighed(low, thrown=0.0, **motion):
     """A bar of one metre on a wall, or free, and a weight of 1 kg before it."""
     return {
         "grid": {"dimension": 1, "size": [4.0], "cell": 0.125},
-        "bodies": {"bar": {"shape": {"box": {"lower": [0.53], "upper": [1.53]}}, "material": "m", "velocity": [velocity]}},
+        "bodies": {"bar": {"shape": {"box": {"lower": [0.53], "upper": [1.53]}}, "material": "m", "velocity": [thrown]}},
         "materials": {"m": {"density": 1.0, "elastic": {"hencky": {"E": 1.0, "nu": 0.0}}}},
         "tools": {"weight": {"shape": {"box": {"lower": [low], "upper": [low + 0.9]}}, "motion": motion}},
         "time": {"end": 1.5}, "output": {"every": 0.05},
@@ -36,3 +36,15 @@ def test_a_bar_that_hits_a_free_tool(plain):
     speed = np.diff(s["travel_weight_x"])[-8:] / np.diff(t)[-8:]
     assert s["momentum_x"][-8:] + speed == pytest.approx(0.01, rel=1e-6)
     assert speed == pytest.approx(0.01 * (1 - np.exp(-2.0)), rel=0.07)
+
+
+def test_a_tool_pushes_a_body_into_another_and_both_against_the_side(plain):
+    """Far off at the start, so that nothing else would bring them there: it ended as `unprepared`. Both are pressed to 0.9: P = E ln F/F."""
+    bar = lambda low: {"shape": {"box": {"lower": [low], "upper": [low + 0.5]}}, "material": "m"}  # noqa: E731
+    scene = weighed(0.1, velocity=[0.2], until=15.5) | {"bodies": {"near": bar(1.0), "far": bar(2.5)}, "time": {"end": 25.0}, "output": {"every": 1.0}}
+    scene["loads"] = [{"of": name, "drag": {"rate": 3.0}} for name in scene["bodies"]]
+    scene["grid"]["size"] = [5.0]
+    (run,) = plain([scene])
+    force = -np.log(0.9) / 0.9
+    assert run["kind"] == "completed", run
+    assert run["series"]["force_weight_x"][-1] == pytest.approx(force, rel=0.01) and run["series"]["force_near_far_x"][-1] == pytest.approx(-force, rel=0.01)

@@ -141,8 +141,7 @@ def test_a_disc_bears_what_presses_it_on_another(core, stiff):
     assert run.outcome.ok and -run.series["force_low_high_y"][-3:] == pytest.approx(F, rel=0.01)
 
 
-@pytest.mark.xfail(strict=True, reason="three or four pieces press: 16 and 18 % too narrow")
-@pytest.mark.parametrize("stiff", [1.0, 4.0])
+@pytest.mark.parametrize("stiff", [pytest.param(1.0, marks=pytest.mark.xfail(strict=True, reason="three pieces press: 16 % too narrow")), 4.0])
 def test_how_wide_two_discs_touch(core, stiff):
     """Half the width, 2 sqrt(<x^2>) over the impulses of both discs' pieces, is Hertz's, b^2 = 4 F (R/2)/(pi E*), to 10 % at 1.4 cells."""
     built, _, _, b = two_discs(core, stiff)
