@@ -16,7 +16,7 @@ BELOW = re.compile(r"^(?:from|import) mpm\.(\w+)|^from mpm import \(?([\w, ]+)",
 
 def source_hash(without: frozenset | set = frozenset()) -> str:
     """Hash of every Python file of the package, less the rooms named (16 hex digits)."""
-    return hash_of(room for room in rooms() if room not in without)
+    return digest(files for room, files in rooms().items() if room not in without)
 
 
 @functools.cache
