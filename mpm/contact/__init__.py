@@ -29,6 +29,7 @@ Further files
     pairs      contacts between bodies: a scene of one body has NoPairs, and compiles nothing of them
     held       bodies that stand still beside others that move
     links      where heat passes between bodies
+    sums       what the weights want of the particles near a contact, kept while little moves
     stretched  how far the surfaces of a pair have grown, for a warning
     narrow     how many cells a contact is wide, for a warning
     overlap    how far what meets has entered each other, for a warning

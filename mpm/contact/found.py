@@ -9,7 +9,10 @@ from mpm.contact.skin import POINT, hoop
 from mpm.jit import kernel
 
 NEAR, REACH = 0.6, 1.25  # cells: gaps that a step can close; how far faces of another body are looked for
-FACING, CORNER = -0.5, -0.2  # cosines
+CLEAR = 1e-6  # cells: positions are rounded
+STRAY = 0.1  # cells that anything may move before what is near is listed anew
+FACING, CORNER, LEVEL, ALIKE = -0.5, -0.2, -0.9, 0.9998  # cosines; the last of one degree
+FLAT = 0.01  # cells: pieces that differ no more in their gaps act as one
 BODY = 6  # against: 2 axis + side of a wall; BODY + b for body b of B; BODY + B + t for tool t
 
 
@@ -28,14 +31,17 @@ class Contacts(NamedTuple):
     balanced: np.ndarray  # (C, 2) whether the weights are balanced with the stress: faces that look along the normal
     given: np.ndarray  # (C, D) velocity of the obstacle there [m/s], less that of a tool which is free
     free: np.ndarray  # (C,) number of a tool that forces move; -1
+    over: np.ndarray  # (C,) first node that a level piece sees, to find others over the same nodes; -1
+    mates: np.ndarray  # (C,) a piece that acts with `piece` as one, -1; the next one:
+    after: np.ndarray  # (P,) of every piece, of the skin
 
 
 @kernel
-def new_contacts(C, D):
-    """Room for C contacts."""
+def new_contacts(C, D, after):
+    """Room for C contacts; after (P,): of the skin."""
     return Contacts(np.empty(C, np.int64), np.empty(C, np.int64), np.empty(C), np.empty(C), np.empty((C, D)), np.empty((C, 2), np.int64),
                     np.empty((C, 2), np.int64), np.empty((C, 2, D)), np.empty((C, 2, D)), np.empty((C, 2), np.uint8), np.empty((C, D)),
-                    np.empty(C, np.int64))  # fmt: skip
+                    np.empty(C, np.int64), np.empty(C, np.int64), np.empty(C, np.int64), after)  # fmt: skip
 
 
 @kernel(inline=True)
@@ -44,15 +50,24 @@ def around(space, r):
     return max(r, 1e-300) if hoop(space) else 1.0
 
 
-@kernel
+@kernel(inline=True)
 def put(found, i, piece, against, gap, mu, who, where, balanced):
     """Write side A of contact i, where there is room; who: body and particle; where: the particle's place and the point that touches."""
     (b, owner), (home, point) = who, where
     found.piece[i], found.against[i], found.gap[i], found.mu[i] = piece, against, gap, mu
     found.body[i, 0], found.body[i, 1], found.owner[i, 0], found.balanced[i, 0], found.balanced[i, 1] = b, -1, owner, balanced, 0
-    found.free[i] = -1
+    found.free[i] = found.over[i] = found.mates[i] = -1
     for a in range(len(home)):  # numpy's own way to fill a row compiles the words of its errors
         found.home[i, 0, a], found.point[i, 0, a], found.given[i, a] = home[a], point[a], 0.0
+
+
+@kernel(inline=True)
+def whole(contacts, area, i):
+    """The area of all pieces that act as contact i."""
+    total, s = area[contacts.piece[i]], contacts.mates[i]
+    while s >= 0:
+        total, s = total + area[s], contacts.after[s]
+    return total
 
 
 @kernel(inline=True)

@@ -36,8 +36,9 @@ def find_links(space, bodies, touching, walls, conductance, dt):
     """The links of a heat step of dt. walls (B, 3, 2): mirrors of each body's temperature; conductance (B, B) [W/(m2 K)]. Welded bodies always touch."""
     D, skin = directions(space), new_skin(directions(space), touching.first)
     M = seen(space) ** D
-    lay_skins(space, bodies, skin)
-    contacts, count = find_all(space, bodies, skin, np.full_like(touching.stops, -1.0), Pairs(conductance - 1e-300), NoTools(), touching.room, NEAR)
+    lay_skins(space, bodies, skin, skin.every, skin.first)
+    stops, pairs = np.full_like(touching.stops, -1.0), Pairs(conductance - 1e-300)
+    contacts, count = find_all(space, bodies, skin, stops, pairs, NoTools(), touching.room, NEAR, touching.number[:0])
     links = Links(np.empty((count, 2), np.int64), np.empty(count), np.empty((count, 2, M), np.int64), np.empty((count, 2, M)))
     L, at, w, g, d = 0, np.zeros((D, M), np.int64), np.zeros(M), np.zeros((D, M)), np.zeros((D, M))
     shape = extents(space)

@@ -22,43 +22,53 @@ class Skin(NamedTuple):
     owner: np.ndarray  # (P,) number of the particle
     body: np.ndarray  # (P,)
     first: np.ndarray  # (bodies + 1,) first piece of each body
+    after: np.ndarray  # (P,) the next of the pieces that act as one (found.py)
+    every: np.ndarray  # (P,) their numbers
+    near: np.ndarray  # (P,) those that may be near something, for a while (find.py), of one body after another from
+    starts: np.ndarray  # (bodies + 1,) on
+    lone: np.ndarray  # (bodies,) whether particles without pieces may be
+    left: np.ndarray  # (1,) how far anything may move until they are listed anew [m]
 
 
 @kernel
 def new_skin(D, first):
     """Room for the pieces of bodies that begin at `first`."""
     P = first[-1]  # pieces that are still to come stay shut
-    skin = Skin(np.zeros((P, D)), np.zeros((P, D)), np.zeros(P), np.zeros((P, D)), np.zeros(P, np.int64), np.empty(P, np.int64), first)
+    skin = Skin(np.zeros((P, D)), np.zeros((P, D)), np.zeros(P), np.zeros((P, D)), np.zeros(P, np.int64), np.empty(P, np.int64), first,
+                np.empty(P, np.int64), np.arange(P), np.arange(P), first.copy(), np.ones(len(first) - 1, np.bool_), np.full(1, -1.0))  # fmt: skip
     for b in range(len(first) - 1):
         skin.body[first[b] : first[b + 1]] = b
     return skin
 
 
 @kernel
-def lay_skins(space, bodies, skin):
-    """Fill the skin from the bodies."""
+def lay_skins(space, bodies, skin, some, starts):
+    """Fill the skin from the bodies: pieces `some`, of body b from starts[b] on."""
     b = 0
     for body in literal_unroll(bodies):
-        lay_skin(body.surface, space, body, skin, skin.first[b])
+        lay_skin(body.surface, space, body, skin, skin.first[b], some[starts[b] : starts[b + 1]])
         b += 1
 
 
 @role
-def lay_skin(surface, space, body, skin, first):
-    """One body's pieces, from number `first` on."""
+def lay_skin(surface, space, body, skin, first, some):
+    """Pieces `some` of one body, whose numbers begin at `first`."""
     raise TypeError(f"no pieces of {type(surface).__name__}")
 
 
 @lay_skin.register(NoExchange)
-def lay_skin_no_exchange(surface, space, body, skin, first):
+def lay_skin_no_exchange(surface, space, body, skin, first, some):
     return None
 
 
 @lay_skin.register(Surface)
-def lay_skin_surface(surface, space, body, skin, first):
+def lay_skin_surface(surface, space, body, skin, first, some):
     D, x, J = directions(space), body.particles.x, body.particles.J
-    for s in range(surface.owner.shape[0]):
-        p, k = surface.owner[s], first + s
+    for k in some:
+        s = k - first
+        if s >= surface.owner.shape[0]:  # still to come
+            break
+        p = surface.owner[s]
         F, A, o = surface.F[surface.row[p]], surface.area[s], surface.offset[s]
         skin.owner[k] = p
         for a in range(D):

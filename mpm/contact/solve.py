@@ -2,7 +2,7 @@
 
 A = sum W_A^2/m_i + sum W_B^2/m_j, the same for every direction;   lambda_n <- max(0, lambda_n - (u_n + max(g/dt, -PUSH c))/A),
 lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when no contact changes its speed A lambda by more than CLOSE of the largest, or after SWEEPS.
-A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
+W/sqrt(m) and v sqrt(m) are worked with: no sweep asks for a mass. A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
 Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work;
 of scenes in slabs: solve_threaded.py.
 """
@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mpm.boundary import directions
+from mpm.contact.spots import WIDE, lanes_of
 from mpm.contact.tools import carry, lightness, recoil
-from mpm.contact.weights import WIDE
 from mpm.jit import kernel
 from mpm.lanes import fma, load4, splat4, store
 
@@ -28,9 +28,9 @@ class Problem(NamedTuple):
     contacts: Any
     at: np.ndarray  # (C, 2, M) their numbers among those
     row: np.ndarray  # (C * 2 * M,) the same, in one row
-    coef: np.ndarray  # (C, 2, M, WIDE) W
-    velocity: np.ndarray  # (K, WIDE)
-    light: np.ndarray  # (K,) 1/m; 0 without mass
+    coef: np.ndarray  # (C, 2, M, WIDE) W/sqrt(m)
+    velocity: np.ndarray  # (K, WIDE) v sqrt(m)
+    light: np.ndarray  # (K,) 1/sqrt(m); 0 without mass
     place: np.ndarray  # (K,) where the node is
     field: np.ndarray  # (K,) of which field
     tools: Any
@@ -56,25 +56,36 @@ def pose(space, contacts, count, weights, fields, nodes, tools, number):
                         at[i, k, m] = number[n]
         for j in range(first, used):
             number[place[j]] = -1
-    velocity, light = np.zeros((used, WIDE)), np.zeros(used)
+    velocity, light, row = np.zeros((used, WIDE)), np.zeros(used), at.reshape(-1)
     for j in range(used):
-        mass = nodes[field[j], place[j], D]
-        light[j] = 1.0 / mass if mass > 0.0 else 0.0
+        root = np.float64(nodes[field[j], place[j], D]) ** 0.5
+        light[j] = 1.0 / root if root > 0.0 else 0.0
         for c in range(D):
-            velocity[j, c] = nodes[field[j], place[j], c]
-    return Problem(contacts, at, at.reshape(-1), coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
+            velocity[j, c] = root * nodes[field[j], place[j], c] if root < np.inf else 0.0
+    for i in range(count):
+        for k in range(2):
+            if contacts.body[i, k] >= 0:
+                for m in range((2 * i + k) * at.shape[2], (2 * i + k + 1) * at.shape[2]):
+                    store(coef, WIDE * m, load4(coef, WIDE * m) * splat4(light[np.uint64(row[np.uint64(m)])]))
+    return Problem(contacts, at, row, coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
 
 
 @kernel
 def settle(space, problem, nodes, force):
-    """The velocities of the problem back to the nodes, and their changes to `force`, where it has rows."""
+    """The velocities of the problem back to the nodes, and their changes to `force`, where it has rows. The largest speed."""
+    most = 0.0
     for j in range(len(problem.place)):
         if problem.light[j] > 0.0:
-            f, n = problem.field[j], problem.place[j]
+            f, n, square = problem.field[j], problem.place[j], 0.0
+            root = np.float64(nodes[f, n, directions(space)]) ** 0.5
             for c in range(directions(space)):
+                change = problem.light[j] * (problem.velocity[j, c] - root * nodes[f, n, c])  # nothing where nothing was given
                 if force.shape[1] > 0:
-                    force[f, n, c] += problem.velocity[j, c] - nodes[f, n, c]
-                nodes[f, n, c] = problem.velocity[j, c]
+                    force[f, n, c] += change
+                nodes[f, n, c] += change
+                square += nodes[f, n, c] ** 2
+            most = max(most, square)
+    return most**0.5
 
 
 @kernel
@@ -119,21 +130,30 @@ def ready(space, problem, some, dt, warm, rows, inverse):
         closing, before = 0.0, 0.0
         for c in range(D):
             closing += min(u[c] * contacts.normal[i, c], 0.0)
-            if contacts.piece[i] >= 0:
-                before += warm[contacts.piece[i], rows[contacts.against[i]], c] * contacts.normal[i, c]
+            before += remembered(contacts, i, c, warm, rows) * contacts.normal[i, c]
         if most > 0.0 and (before > 0.0 or contacts.gap[i] + 1.5 * dt * closing < SURE * space.h):
             inverse[i] = 1.0 / most
 
 
 @kernel(inline=True)
+def remembered(contacts, i, c, warm, rows):
+    """Component c of the impulse that the pieces of contact i bore in the step before."""
+    total, s, more, row = 0.0, contacts.piece[i], contacts.mates[i], rows[contacts.against[i]]
+    while s >= 0:
+        total += warm[s, row, c]
+        s, more = more, contacts.after[more] if more >= 0 else -1
+    return total
+
+
+@kernel(inline=True)
 def borne(problem, i, u):
-    """u <- sum W^2/m of contact i, a direction each."""
+    """u <- A of contact i, a direction each."""
     total, M = splat4(0.0), problem.at.shape[2]
     for k in range(2):
         if problem.contacts.body[i, k] >= 0:
             for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
                 weight = load4(problem.coef, WIDE * m)
-                total = fma(weight * weight, splat4(problem.light[np.uint64(node(problem, m))]), total)
+                total = fma(weight, weight, total)
     store(u, 0, total)
 
 
@@ -174,31 +194,28 @@ def speed(problem, i, D, u):
 @kernel(inline=True)
 def push(problem, i, D, change):
     """Put a change of impulse on both sides."""
-    contacts, M, size = problem.contacts, problem.at.shape[2], load4(change, 0)
+    contacts, M, size = problem.contacts, problem.at.shape[2], lanes_of(D, change)
     for k in range(2):
         if contacts.body[i, k] < 0:
             continue
         way = size if k == 0 else -size
         for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
             n = node(problem, m)
-            weight = load4(problem.coef, WIDE * m) * splat4(problem.light[np.uint64(n)])
-            store(problem.velocity, WIDE * n, fma(weight, way, load4(problem.velocity, WIDE * n)))
+            store(problem.velocity, WIDE * n, fma(load4(problem.coef, WIDE * m), way, load4(problem.velocity, WIDE * n)))
     recoil(problem.tools, contacts.free[i], change[:D])
 
 
 @kernel(inline=True)
 def begin(problem, i, D, warm, rows, change):
     """The impulse of the step before, within the cone of this one."""
-    contacts = problem.contacts
-    if contacts.piece[i] < 0:
-        return
-    old, along, square = warm[contacts.piece[i], rows[contacts.against[i]]], 0.0, 0.0
+    contacts, along, square = problem.contacts, 0.0, 0.0
     for c in range(D):
-        along += old[c] * contacts.normal[i, c]
+        change[c] = remembered(contacts, i, c, warm, rows)
+        along += change[c] * contacts.normal[i, c]
     if not along > 0.0:
         return
     for c in range(D):
-        change[c] = old[c] - along * contacts.normal[i, c]
+        change[c] -= along * contacts.normal[i, c]
         square += change[c] ** 2
     most = contacts.mu[i] * along
     share = 1.0 if square <= most * most else most / square**0.5

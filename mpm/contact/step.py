@@ -9,17 +9,19 @@ from numba import literal_unroll
 
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import empty, unfold
-from mpm.contact.find import find_all
-from mpm.contact.found import BODY, NEAR
+from mpm.contact.find import find_all, list_near
+from mpm.contact.found import BODY, NEAR, whole
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import apart, pose, press, settle, speed
+from mpm.contact.sums import add_up, hold_good, make_room, new_sums
 from mpm.contact.tools import arm, carry, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
 from mpm.integrate.fbar import average_all
 from mpm.integrate.grid_heating import compress_all
 from mpm.integrate.step_parts import Moment, field_buffers, scratch
+from mpm.integrate.strain import SPEED
 from mpm.integrate.xpic import sharpen
 from mpm.jit import kernel
 from mpm.transfer import wants_change
@@ -66,7 +68,7 @@ class Pace(NamedTuple):
 def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
     """As explicit.advance with the nodes of every field."""
     shape, fields, steps, first = extents(method.space), len(touching.walls), pace.steps, field_buffers(grids, 0)
-    chunk, skin = scratch(method, bodies, first.nodes), new_skin(gravity.shape[1], touching.first)
+    chunk, skin, sums = scratch(method, bodies, first.nodes), new_skin(gravity.shape[1], touching.first), new_sums(method.space, len(touching.fields))
     for f in range(fields):
         empty(shape, grids.boxes[f, 0])
         empty(shape, grids.boxes[f, 1])
@@ -74,7 +76,7 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
         opening, last, now = step < 0, step == steps - 1, step % 2
         if not opening:
             before_contacts(method, bodies, chunk, touching, grids, (step, now), gravity, pace)
-            meet(method, bodies, touching, skin, grids, now, pace)
+            sums = meet(method, bodies, touching, skin, sums, grids, now, pace, reports)
             after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, reports)
         moment = Moment(now, pace.kick if opening else pace.dt, step, pace.begun, opening, last, steps >= 0)  # marks are always wanted here
         ok, b = True, 0
@@ -114,40 +116,45 @@ def after_contacts(method, bodies, chunk, touching, grids, now, dt, reports):
 
 
 @kernel
-def meet(method, bodies, touching, skin, grids, now, pace):
-    """One step's contacts, on the nodes of buffer `now`; and the books of it."""
-    contacts, count = seek(method.space, bodies, touching, skin)
+def meet(method, bodies, touching, skin, sums, grids, now, pace, reports):
+    """One step's contacts, on the nodes of buffer `now`; and the books of it. The sums of weights.py, as they are then."""
+    fastest = 0.0
+    for report in reports:
+        fastest = max(fastest, report[SPEED])
+    space, (contacts, count) = method.space, seek(method.space, bodies, touching, skin, sums, fastest**0.5 * pace.dt)
     if count > 0:
         nodes = grids.nodes[:, now]
-        weights = weigh(method.space, method.gradient, bodies, touching.fields, touching.walls, skin, contacts, count, nodes, touching.number)
-        resolve(method, touching, skin, grids, now, pace, (contacts, count, weights))
+        if not hold_good(space, touching.walls, touching.fields, sums, contacts, count, touching.number):
+            sums = make_room(space, touching.walls, touching.fields, sums, contacts, count, touching.number)
+            add_up(space, method.gradient, bodies, touching.walls, touching.fields, skin, sums, touching.number)
+        weights = weigh(space, method.gradient, touching.walls, touching.fields, skin, sums, contacts, count, nodes, touching.number)
+        problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
+        press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows)
+        finish(method, touching, skin, sums, grids, now, pace, problem)
+    return sums
 
 
 @kernel
-def seek(space, bodies, touching, skin):
-    """(contacts, how many) of the present positions."""
-    lay_skins(space, bodies, skin)
-    found, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
+def seek(space, bodies, touching, skin, sums, travel):
+    """(contacts, how many) of the present positions; no particle has moved farther than `travel` [m] since the step before."""
+    skin.left[0] -= travel
+    if skin.left[0] >= 0.0:
+        lay_skins(space, bodies, skin, skin.near, skin.starts)
+    else:
+        lay_skins(space, bodies, skin, skin.every, skin.first)
+        list_near(space, bodies, skin, touching.stops, touching.pushed.shape[1] == BODY + 1)
+    found, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR, touching.number)
     if count == 0:
-        touching.warm[:] = 0.0
+        touching.warm[:], sums.moved[0] = 0.0, np.inf
     return found, count
 
 
 @kernel
-def resolve(method, touching, skin, grids, now, pace, near):
-    """The impulses of the contacts, on the nodes; near: contacts, how many, weights."""
-    (contacts, count, weights), space, nodes = near, method.space, grids.nodes[:, now]
-    problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
-    press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows)
-    finish(method, touching, skin, grids, now, pace, problem)
-
-
-@kernel
-def finish(method, touching, skin, grids, now, pace, problem):
+def finish(method, touching, skin, sums, grids, now, pace, problem):
     """Nodes and books after the impulses are found."""
     space, nodes, force = method.space, grids.nodes[:, now], grids.force[:, now]
     D, shape = directions(space), extents(space)
-    settle(space, problem, nodes, force)
+    sums.moved[0] += pace.dt * settle(space, problem, nodes, force)
     if keep_books(space, touching, skin, problem, pace):
         for f in range(len(touching.walls)):
             unfold(nodes[f], D, shape, grids.boxes[f, now], touching.walls[f], grids.blocks[f, now])
@@ -174,8 +181,6 @@ def keep_books(space, touching, skin, problem, pace):
             touching.pushed[a, to, c] += impulse[i, c]
             if b >= 0:
                 touching.pushed[b, BODY + a, c] -= impulse[i, c]
-            if s >= 0:
-                touching.warm[s, row, c] = impulse[i, c]
         if contacts.mu[i] > 0.0 and along > 0.0:
             speed(problem, i, D, slip)
             for c in range(D):
@@ -187,13 +192,20 @@ def keep_books(space, touching, skin, problem, pace):
         pressed = pressed or along > 0.0
         touching.parted[0] += along * apart(contacts.gap[i], pace.ahead, pace.sound)
         touching.deepest[a, to] = max(touching.deepest[a, to], -contacts.gap[i])
-        if contacts.balanced[i, 0] and (along > 0.0 or contacts.gap[i] <= TOUCH * space.h):
-            touching.touched[s, row] += dt
-            touching.spread[a, to] += skin.area[s] * dt
+        total, touches = whole(contacts, skin.area, i) if contacts.mates[i] >= 0 else 0.0, along > 0.0 or contacts.gap[i] <= TOUCH * space.h
+        more = contacts.mates[i]
+        while s >= 0:
+            part = skin.area[s] / total if total > 0.0 else 1.0
+            for c in range(D):
+                touching.warm[s, row, c] = part * impulse[i, c]
+            if contacts.balanced[i, 0] and touches:
+                touching.touched[s, row] += dt
+                touching.spread[a, to] += skin.area[s] * dt
+            s, more = more, contacts.after[more] if more >= 0 else -1
     return pressed
 
 
-@kernel
+@kernel(inline=True)
 def cross(x, v, out):
     """out (3,) = x cross v, of vectors in a plane or in space."""
     a, b, c = v[0], v[1] if len(v) > 1 else 0.0, v[2] if len(v) > 2 else 0.0

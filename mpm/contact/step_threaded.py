@@ -7,13 +7,15 @@ threads gives the same bits. So do the impulses (solve_threaded.py). Which piece
 import numpy as np
 
 from mpm.boundary import CONTACT, directions, extents
-from mpm.contact.skin import new_skin
+from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import pose
 from mpm.contact.solve_threaded import PART, press_in_slabs
 from mpm.contact.step import after_contacts, before_contacts, finish, seek
-from mpm.contact.weights import fall_short, mark, new_weights, shares, unmark
+from mpm.contact.sums import fall_short, forget, hold_good, lean_all, make_room, new_sums, recall
+from mpm.contact.weights import new_weights, shares
 from mpm.integrate.step_parts import method_of, scratch
 from mpm.integrate.step_threaded import steps_in_slabs, wave
+from mpm.integrate.strain import SPEED
 from mpm.jit import kernel
 from mpm.state import PAD
 
@@ -27,17 +29,21 @@ def new_scratch(method, bodies, grids):
 def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
     """As step.advance_touching. Whether a chunk was late (integrate/step_threaded.py)."""
     method, bodies, skin = method_of(scene), scene.for_motion, new_skin(directions(scene.space), touching.first)
-    chunk = new_scratch(method, bodies, grids)
+    chunk, sums = new_scratch(method, bodies, grids), new_sums(scene.space, len(bodies))
 
     def between(step, now, _, slabs, crew):
         before_contacts(method, bodies, chunk, touching, grids, (step, now), scene.gravity, pace)
-        contacts, count = seek(scene.space, bodies, touching, skin)
+        nonlocal sums
+        contacts, count = seek(scene.space, bodies, touching, skin, sums, pace.dt * float(slabs.reports[..., SPEED].max()) ** 0.5)
         if count > 0:
             nodes = grids.nodes[:, now]
-            weights = weigh_in_slabs(scene, touching, skin, (contacts, count), nodes, slabs, crew)
+            if not hold_good(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number):
+                sums = make_room(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number)
+                add_up_in_slabs(scene, touching, skin, sums, slabs, crew)
+            weights = weigh_in_slabs(scene, touching, skin, sums, (contacts, count), nodes, crew)
             problem = pose(scene.space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
             press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, slabs, crew)
-            finish(method, touching, skin, grids, now, pace, problem)
+            finish(method, touching, skin, sums, grids, now, pace, problem)
         after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, slabs.reports[-1])
 
     return steps_in_slabs(scene, method, grids, touching.fields, between, (pace.dt, pace.kick, pace.steps, pace.begun), True, reports)
@@ -50,30 +56,39 @@ def apart(scene, walls, slabs) -> bool:
     return not (slabs.strays.any() or (mirrored[0] and (reach[2:, 0] <= low).any()) or (mirrored[1] and (reach[:-2, 1] > high).any()))
 
 
-def weigh_in_slabs(scene, touching, skin, near, nodes, slabs, crew):
-    """weights.weigh, by threads; where slabs are not `apart`, by one, in the same order."""
-    (contacts, count), space, gradient, number = near, scene.space, scene.gradient, touching.number
-    weights, order = new_weights(space, count), wave(slabs.starts.shape[1] - 1)
-    parts = 2 * np.arange(-(-count // PART))  # even: they wait for nobody
+def add_up_in_slabs(scene, touching, skin, sums, slabs, crew) -> None:
+    """sums.add_up, by threads; where slabs are not `apart`, by one, in the same order."""
+    space, number, order = scene.space, touching.number, wave(slabs.starts.shape[1] - 1)
+    lay_skins(space, scene.for_motion, skin, skin.every, skin.first)
     for b, body in enumerate(scene.for_motion):
-        f = touching.fields[b]
-        box, short = mark(space, b, touching.walls[f], contacts, count, number)
+        walls = touching.walls[touching.fields[b]]
 
-        def add(which, f=f, b=b, body=body, box=box, short=short):
+        def add(which, walls=walls, b=b, body=body):
             for s in which:
-                some = int(slabs.starts[b, s]), int(slabs.starts[b, s + 1])
-                fall_short(space, gradient, body.particles, b, touching.walls[f], skin, box, number, short, some)
+                fall_short(space, scene.gradient, body.particles, b, walls, skin, sums, number, (int(slabs.starts[b, s]), int(slabs.starts[b, s + 1])))
 
-        def share(which, f=f, b=b, short=short):
-            for part in which // 2:
-                some = int(part) * PART, min(count, (int(part) + 1) * PART)
-                shares(space, gradient, b, touching.walls[f], contacts, some, nodes[f], number, short, weights)
-
-        if len(short[0]) > 0:
+        if sums.first[b] < sums.first[b + 1]:
+            recall(sums, b, number)
             if apart(scene, touching.walls, slabs):
                 crew.work(order, add)
             else:
                 add(order)
+            forget(sums, b, number)
+    lean_all(space, sums)
+
+
+def weigh_in_slabs(scene, touching, skin, sums, near, nodes, crew):
+    """weights.weigh, by threads."""
+    (contacts, count), space, number = near, scene.space, touching.number
+    weights, parts = new_weights(space, count), 2 * np.arange(-(-count // PART))  # even: they wait for nobody
+    for b, f in enumerate(touching.fields):
+
+        def share(which, f=f, b=b):
+            for part in which // 2:
+                some = int(part) * PART, min(count, (int(part) + 1) * PART)
+                shares(space, scene.gradient, b, touching.walls[f], skin, sums, contacts, some, nodes[f], number, weights)
+
+        recall(sums, b, number)
         crew.work(parts, share)
-        unmark(contacts, b, count, number, weights)
+        forget(sums, b, number)
     return weights

@@ -61,8 +61,8 @@ def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
         met.drive.lay(clock.time, dt, 1)
         place_tools(touching.tools, 0, dt, 0.0)
     skin = new_skin(D, touching.first)
-    lay_skins(scene.space, scene.bodies, skin)
-    found, count = find_all(scene.space, scene.for_motion, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR)
+    lay_skins(scene.space, scene.bodies, skin, skin.every, skin.first)
+    found, count = find_all(scene.space, scene.for_motion, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR, touching.number[:0])
     piece = found.piece[:count]
     s = np.flatnonzero((piece >= 0) & (np.sum(found.normal[:count] * skin.normal[piece], axis=1) < 0.5))
     piece, normal, against, mu, gap = (column[s] for column in (found.piece, found.normal, found.against, found.mu, found.gap))

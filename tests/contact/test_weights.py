@@ -7,9 +7,9 @@ from mpm.basis import inverse_moment
 from mpm.boundary import CONTACT, SLIP, STICK, directions, extents
 from mpm.boundary.walls import held
 from mpm.contact.found import new_contacts
-from mpm.contact.skin import Skin, hoop
+from mpm.contact.skin import hoop, new_skin
 from mpm.contact.spots import along, new_spots, seen
-from mpm.contact.weights import fall_short, mark
+from mpm.contact.sums import fall_short, hold_good, make_room, new_sums, recall
 from mpm.state import PAD, Axisymmetric, Cubic, Line, Particles, Plane, Quadratic, Volume
 from mpm.transfer import Bspline, Mls, uses_basis_gradient
 
@@ -82,14 +82,18 @@ def test_sums_over_particles_and_pieces(name, gradient, basis):
     walls[0, 0], walls[D - 1, 0] = SLIP, STICK
     normal = rng.normal(size=(C, D))
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    skin = Skin(x[:C] + 0.02 * rng.normal(size=(C, D)), normal, H ** (D - 1) * (1 + rng.random(C)), x[:C], np.arange(C), np.zeros(C, int), np.array([0, C]))
-    contacts = new_contacts(C, D)
+    skin = new_skin(D, np.array([0, C]))
+    skin.x[:], skin.normal[:], skin.area[:] = x[:C] + 0.02 * rng.normal(size=(C, D)), normal, H ** (D - 1) * (1 + rng.random(C))
+    skin.home[:], skin.owner[:] = x[:C], np.arange(C)
+    contacts = new_contacts(C, D, skin.after)
     contacts.body[:], contacts.balanced[:], contacts.home[:, 0] = [0, -1], [1, 0], x[:C]
-    number = np.full(SIZE**D, -1)
+    number, fields = np.full(SIZE**D, -1), np.zeros(1, int)
 
-    box, short = mark(space, 0, walls, contacts, C, number)
+    sums = make_room(space, walls[None], fields, new_sums(space, 1), contacts, C, number)
+    assert (number == -1).all() and hold_good(space, walls[None], fields, sums, contacts, C, number)
+    recall(sums, 0, number)
     for some in ((0, 20), (20, N)):
-        fall_short(space, gradient, particles, 0, walls, skin, box, number, short, some)
+        fall_short(space, gradient, particles, 0, walls, skin, sums, number, some)
 
     r, T = np.zeros((SIZE**D, D)), np.zeros((SIZE**D, D, D))
     spots, marked = new_spots(space), set()
@@ -106,5 +110,5 @@ def test_sums_over_particles_and_pieces(name, gradient, basis):
             T[n] += skin.area[s] * w[m] * np.outer(normal[s], normal[s])
     assert extents(space)[0] == SIZE and directions(space) == D and set(np.flatnonzero(number >= 0)) == marked
     nodes = sorted(marked)
-    assert short[0][number[nodes], :D] == pytest.approx(r[nodes], abs=1e-12 * np.abs(r).max())
-    assert short[1][number[nodes], :, :D] == pytest.approx(T[nodes], abs=1e-12 * np.abs(T).max())
+    assert sums.lack[number[nodes], :D] == pytest.approx(r[nodes], abs=1e-12 * np.abs(r).max())
+    assert sums.T[number[nodes], :, :D] == pytest.approx(T[nodes], abs=1e-12 * np.abs(T).max())
