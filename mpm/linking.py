@@ -21,7 +21,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher, _FunctionCompiler
 
 from mpm import compiling
-from mpm.shortcuts import SHORTCUTS, building, stock
+from mpm.shortcuts import LENT, SHORTCUTS, building, stock
 
 TESTED = (0, 66), (0, 68)  # first and last (major, minor) tried: the last by the default tests, the first by tests/test_linking.py alone
 
@@ -203,6 +203,7 @@ REPLACED = (
     (CPUCodeLibrary, "add_linking_library", add_linking_library),
     (CPUCodeLibrary, "finalize", finalize),
     *SHORTCUTS,
+    *LENT,
 )
 
 

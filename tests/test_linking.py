@@ -6,10 +6,13 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
 import numpy as np
 import pytest
+from numba.core.runtime import _nrt_python as _nrt
+from numba.core.runtime import rtsys
 
 import mpm
 from mpm import compiling, linking
@@ -129,14 +132,14 @@ x = np.random.default_rng(0).random((40, 2))
 print(state_check.span(x.ravel()), sorting.sorting(sorting.first_nodes(Plane(0.1, 20, 20), x)).tolist())
 for kernel in (state_check.span, sorting.sorting, sorting.first_nodes):
     code = re.sub(r"B2B\\d+|0x[0-9a-f]+|pickle\\w+[.]\\d+", "", next(iter(kernel.overloads.values())).library.get_llvm_str())
-    for function in code.split("\\ndefine "):
-        seen = {}
-        print(re.sub(r"%(?!arg)[\\w.]+", lambda name: f"%{seen.setdefault(name[0], len(seen))}", function))
+    for block in re.sub(r'%(?!arg)["\\w.$]+', '%', code).split("\\n\\n"):
+        lines = [line.partition("!")[0] for line in block.splitlines()]
+        print(*sorted(line for line in lines if " phi " in line), *(line for line in lines if " phi " not in line), sep="\\n")
 """
 
 
 def test_shortcuts_change_no_instruction(tmp_path):
-    """Lanes, loops, roles, named tuples and what numpy makes: the code of each kernel, but for names, numbers that count functions, and places in memory."""
+    """Lanes, loops, roles, named tuples, what numpy makes: the code of each kernel, but for names, the order of phis, numbers, places in memory."""
     codes = []
     for way in ("short", "stock"):
         env = os.environ | {"MPM_CACHE_DIR": str(tmp_path / way), "PYTHONHASHSEED": "0"}  # names hold flags, in the order of a set
@@ -144,6 +147,51 @@ def test_shortcuts_change_no_instruction(tmp_path):
         assert done.returncode == 0, done.stderr[-2000:]
         codes.append(done.stdout)
     assert len(codes[0]) > 50_000 and codes[0] == codes[1]
+
+
+class Pair(NamedTuple):
+    """Two arrays."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+def part(pair, numbers, k):
+    """An argument's field, a view of it, a copy by a list of places, one that is chosen in a branch, a tuple of lent ones."""
+    x, copied = pair.x, pair.y[numbers]
+    view = x[k:]
+    both = (view, pair.y)
+    chosen = pair.y
+    if k > 1:
+        chosen = np.ones(3)
+    total = 0.0
+    for i in range(len(both[0])):
+        row = both[0][i:]
+        total += row[0] * chosen[0] + copied[0]
+    return view, both, chosen, total
+
+
+def test_what_is_lent_is_neither_freed_nor_kept():
+    """Users of arrays are counted right where an argument's arrays are given back, and where they are only looked at."""
+    part.__module__ = "mpm.tensors"  # as a kernel of ours
+    kernel = numba.njit(part)
+    pair, numbers = Pair(np.arange(6.0), np.arange(6.0) + 1.0), np.array([2, 3])
+    given = (pair.x, pair.y, numbers)
+    before = [sys.getrefcount(one) for one in given]
+    for k in (1, 2):
+        for _ in range(50):
+            view, both, chosen, total = kernel(pair, numbers, k)
+        assert view.tolist() == both[0].tolist() == pair.x[k:].tolist() and both[1].tolist() == pair.y.tolist()
+        assert chosen.tolist() == (pair.y.tolist() if k == 1 else [1.0] * 3) and total == pytest.approx(pair.x[k:].sum() + 3.0 * (6 - k))
+        assert [sys.getrefcount(one) for one in given] > before
+        del view, both, chosen
+        assert [sys.getrefcount(one) for one in given] == before
+    _nrt.memsys_enable_stats()
+    allocated = rtsys.get_allocation_stats()
+    for _ in range(10):
+        kernel(pair, numbers, 2)
+    after = rtsys.get_allocation_stats()
+    assert after.alloc - allocated.alloc == after.free - allocated.free > 0
 
 
 THREADS = """

@@ -1,38 +1,20 @@
-"""What Numba works out anew for every instruction of a kernel, worked out once, and instructions spared that LLVM would only remove again: both save time in
-compiling (`.ci/compile_times.py` measures it).
+"""What Numba works out anew for every instruction of a kernel, worked out once."""
 
-Replacements of Numba's methods, installed by mpm.linking for the versions that it was tested with. They act while a kernel of ours is built and give what the
-stock method gives, so a kernel's code, and with it every bit of its results, is the same with and without them (tests/test_linking.py).
-"""
-
-import threading
-from collections import Counter
 from types import BuiltinFunctionType
 
-from llvmlite.ir import IRBuilder
-from llvmlite.ir.instructions import InsertValue
-from numba.core import ir
+from numba.core import base, ir
 from numba.core.base import BaseContext
 from numba.core.codegen import CPUCodeLibrary
-from numba.core.lowering import Lower
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.runtime.context import NRTContext
 from numba.core.targetconfig import TargetConfig
 from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import BaseFunction
 
+from mpm.shortcuts.building import building, counts, stock
 
-class Building(threading.local):
-    """What this thread compiles: 0 nothing of ours, 1 a kernel that Python called, 2 and more its callees."""
-
-    depth = 0
-    kernel = None  # its Python function
-
-
-building = Building()
-stock: dict = {}  # Numba's own methods, by place, where they are replaced
 sizes: dict = {}  # bytes of LLVM types, by their text
-counted: dict = {}  # whether a type holds an array somewhere
+located: dict = {}  # whether what lowers an instruction asks where it stands, by its code
 PLAIN = {str, int, float, bool, type(None), type, BuiltinFunctionType, ir.Loc}  # parts of an instruction that hold no variable
 
 
@@ -108,17 +90,6 @@ def hash_of_flags(flags):
     return hash(type(flags))
 
 
-def extract_value(builder, aggregate, index, name=""):
-    """IRBuilder.extract_value: what was put together here is not taken apart again. A tuple of arrays has hundreds of fields, for every call and every use."""
-    if building.depth and type(index) is int:
-        one = aggregate
-        while type(one) is InsertValue and len(one.indices) == 1:
-            if one.indices[0] == index:
-                return one.value
-            one = one.aggregate
-    return stock["IRBuilder.extract_value"](builder, aggregate, index, name)
-
-
 def get_meminfos(runtime, builder, kind, value):
     """NRTContext.get_meminfos: of the parts that hold arrays, not of every number."""
     if not building.depth:
@@ -127,21 +98,19 @@ def get_meminfos(runtime, builder, kind, value):
     model = models[kind]
     found = [(kind, model.get_nrt_meminfo(builder, value))] if model.has_nrt_meminfo() else []
     for part, take in model.traverse(builder):
-        if part not in counted:
-            counted[part] = models[part].contains_nrt_meminfo()
-        if counted[part]:
+        if counts(runtime._context, part):
             found += get_meminfos(runtime, builder, part, take(value))
     return found
 
 
-def find_singly_assigned(lowering):
-    """Lower._find_singly_assigned_variable: neither are arguments, which are there from the first block on, kept in memory where no array is counted."""
-    stock["Lower._find_singly_assigned_variable"](lowering)
-    if not building.depth or lowering.context.enable_nrt or lowering.func_ir.func_id.is_generator:
-        return
-    given = [one for block in lowering.blocks.values() for one in block.body if isinstance(one, ir.Assign)]
-    times = Counter(one.target.name for one in given)
-    lowering._singly_assigned_vars |= {one.target.name for one in given if isinstance(one.value, ir.Arg) and times[one.target.name] == 1}
+def has_loc(function):
+    """numba.core.base._has_loc: by the signature of each function that lowers an instruction, for each instruction."""
+    code = getattr(function, "__code__", None)
+    if code is None or hasattr(function, "__wrapped__"):
+        return stock["numba.core.base._has_loc"](function)
+    if code not in located:
+        located[code] = stock["numba.core.base._has_loc"](function)
+    return located[code]
 
 
 SHORTCUTS = (
@@ -152,7 +121,6 @@ SHORTCUTS = (
     (ir.Inst, "_rec_list_vars", variables_in),
     (TargetConfig, "__eq__", same_flags),
     (TargetConfig, "__hash__", hash_of_flags),
-    (IRBuilder, "extract_value", extract_value),
     (NRTContext, "get_meminfos", get_meminfos),
-    (Lower, "_find_singly_assigned_variable", find_singly_assigned),
+    (base, "_has_loc", has_loc),
 )
