@@ -100,6 +100,8 @@ def finding(item: Any, slot: Slot, prefix: Path) -> Finding:
         return Finding(
             path, f"at least {least} {'entry is' if least == 1 else 'entries are'} needed, found {item['ctx']['actual_length']}", "", on_key=not given
         )
+    if kind == "too_long":
+        return Finding(path, f"{len(given)} entries", f"at most {item['ctx']['max_length']}", on_key=True)
     if kind == "string_pattern_mismatch":
         return Finding(path, "not a plain name", "letters, digits and underscores, not beginning with a digit", given=given)
     context = item.get("ctx", {})
