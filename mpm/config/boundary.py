@@ -110,7 +110,7 @@ class WallHeat(Exchange):
 
     rates, meets = ("beta",), "temperature"
 
-    beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at the wall's temperature")
+    beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at its temperature; at 0 the body's surroundings act")
     temperature: Programme = doc(description="temperature of the wall; may change over time")
 
 
