@@ -19,10 +19,10 @@ LEAST = {"rigid": 1.5e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 INCREMENTS = 0.8  # of STEP more with FLIP, whose increments go over the grid beside velocities: slump.yaml takes 0.61 s with APIC, 0.8 with affine FLIP
 SKIN = 60e-9  # s a piece of surface and step near something: its place, and what it is before
-MET = {1: 1e-6, 2: 4e-6, "axisymmetric": 4e-6, 3: 6e-6}  # s a piece that meets something and step: gap, weights, impulses (mpm.contact)
+MET = {1: 1e-6, 2: 1e-6, "axisymmetric": 1e-6, 3: 6e-6}  # s a piece that meets something and step: gap, weights, impulses (mpm.contact)
 LOCKING = 1.0  # of STEP more with F-bar, whose averages go over the grid and back
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
-ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6, "near": 40e-6}  # s, whatever the number of particles
+ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6, "near": 30e-6, "synced": 0.7e-3}  # s, whatever the number of particles
 HEAT, OUTPUT = {1: 0.5e-6, 2: 1.2e-6, "axisymmetric": 1.2e-6, 3: 1.2e-6}, 500e-9  # s a particle and heat step, and output
 # s of the interpreter in a run, by method
 RIGID = {"LinearSteps": 0.25e-3, "NewtonSteps": 25e-3, "ChebyshevSteps": 6e-3, "BoundedSteps": 3e-3, "JoinedLinear": 0.1, "JoinedNewton": 0.5}
@@ -183,8 +183,7 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
 
 
 def meeting(experiment, scene, particles: int, steps: int, sound: float) -> float:
-    """Seconds that contact takes: all pieces of surface in the steps in which something may be near, two more of them a record (mpm.contact.insync), and more
-    for those that meet something."""
+    """Seconds of contact: all pieces of surface in steps in which something may be near, two more a record, called alone (mpm.contact.insync); more for what meets."""
     from mpm.contact.outlook import near_shares
 
     parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
@@ -194,7 +193,8 @@ def meeting(experiment, scene, particles: int, steps: int, sound: float) -> floa
         return 0.0
     finer = (particles / sum(len(body.particles.m) for body in scene.wholes)) ** (1 - 1 / experiment.grid.directions)
     pieces, met = finer * int(scene.meeting.touching.first[-1]), finer * sum(part * some for part, some in found)
-    return (steps + 2 * outputs(experiment)) * (share * (ALONE["near"] + pieces * SKIN) + met * MET[experiment.grid.dimension])
+    each = share * (ALONE["near"] + pieces * SKIN) + met * MET[experiment.grid.dimension]
+    return (steps + 2 * outputs(experiment)) * each + outputs(experiment) * share * ALONE["synced"]
 
 
 def estimate_moving(experiment) -> dict:

@@ -44,8 +44,18 @@ def find_all(space, bodies, skin, stops, pairs, tools, room, within, number):
 @kernel
 def list_near(space, bodies, skin, stops, alone):
     """Which pieces, and whether particles without one, may be near until something has moved by STRAY; where not `alone` all of the pieces."""
-    skin.left[0], found, b = STRAY * space.h, new_contacts(0, directions(space), skin.after), 0
+    found, b = new_contacts(0, directions(space), skin.after), 0
+    list_pieces(space, skin, stops, alone)
     for body in literal_unroll(bodies):
+        skin.lone[b] = find_lone(body.surface, space, body, b, stops, found, 0, STRAY) > 0
+        b += 1
+
+
+@kernel
+def list_pieces(space, skin, stops, alone):
+    """`list_near` of pieces; of its own, as a loop over bodies of several types holds no other loop."""
+    skin.left[0] = STRAY * space.h
+    for b in range(len(skin.first) - 1):
         skin.starts[b + 1] = skin.starts[b]
         for s in range(skin.first[b], skin.first[b + 1]):
             close = not alone
@@ -55,8 +65,6 @@ def list_near(space, bodies, skin, stops, alone):
             if close:
                 skin.near[skin.starts[b + 1]] = s
                 skin.starts[b + 1] += 1
-        skin.lone[b] = find_lone(body.surface, space, body, b, stops, found, 0, STRAY) > 0
-        b += 1
 
 
 @kernel(inline=True)

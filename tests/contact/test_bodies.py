@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from contact_scenes import bars
 
 import mpm
 from mpm.scene.build import SceneError, build
@@ -182,3 +183,14 @@ def test_of_one_body(plain):
     assert s["temperature_mean_hot"][0] == 400 and s["temperature_mean_cold"][0] == 300
     assert s["position_max_x_hot"][0] == pytest.approx(0.5, abs=1e-12) and s["position_max_x_cold"] == pytest.approx(s["position_max_x"], abs=0.0)
     assert fast["series"]["heat_hot_cold"][-1] == pytest.approx(s["heat_hot_cold"][-1], rel=1e-3)  # conductances are rates too
+
+
+@pytest.mark.wide
+def test_bodies_of_different_laws_meet_compiled():
+    """Their types differ, and a loop over them is unrolled: it compiled for bodies of one type only. Momentum to rounding."""
+    scene = bars(1, n=8, speed=0.05, end=2.0)
+    scene["materials"]["k"]["flow"] = {"ellipse": {"M": 100.0, "p0": 20.0, "eta": 1.0}}
+    tree = mpm.run(mpm.load(scene))
+    series = tree["series"].ds
+    assert int(tree.ds.status) == 0 and series.force_a_b_x.values.min() < -0.01
+    assert np.abs(series.momentum_x.values / 0.05 - 1).max() < 1e-12
