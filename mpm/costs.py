@@ -183,7 +183,7 @@ def moving(experiment, particles: int, steps: int, heat_steps: int) -> float:
 
 
 def meeting(experiment, scene, particles: int, steps: int, sound: float) -> float:
-    """Seconds of contact: all pieces of surface in steps in which something may be near, two more a record, called alone (mpm.contact.insync); more for what meets."""
+    """Seconds of contact: all pieces of surface in steps near something, two more a record, called alone (mpm.contact.insync); more for what meets."""
     from mpm.contact.outlook import near_shares
 
     parts = [experiment.materials[body.material] for body in experiment.bodies.values()]
