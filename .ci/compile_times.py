@@ -4,6 +4,7 @@ Every row runs in a copy of each checkout, by this Python, its compile cache emp
 
 scenes  processor seconds, wall seconds and the largest memory of `mpm run SCENE --smoke`      main   wall seconds of `mpm sweep configs/scenes/loaf.yaml`
 edit    the cube again after an edit of guards.py                                             ball   set-up of a ball of 932 000 particles in 3-D
+text    instructions that LLVM is given for the cube, in thousands; of these: tuples and arrays taken apart and together; counts of users of arrays
 warm    `mpm bench --np 100000`: milliseconds a step, 3-D f64 and 2-D f32, and seconds of a slump, compiled before
 """
 
@@ -44,6 +45,23 @@ experiment = mpm.load({
 })
 print(min(mpm.run_point(experiment).wall_time for _ in range(4)))
 """
+TEXT = """
+import json, sys, tempfile
+from llvmlite import binding
+from mpm_cli.main import main
+found, parse = [0, 0, 0], binding.parse_assembly
+def counted(text, *rest):
+    lines = [line for line in text.splitlines() if line.startswith("  ")]
+    found[0] += len(lines)
+    found[1] += sum(" extractvalue " in line or " insertvalue " in line for line in lines)
+    found[2] += sum("NRT_incref" in line or "NRT_decref" in line for line in lines)
+    return parse(text, *rest)
+binding.parse_assembly = counted
+try:
+    main(["run", "configs/scenes/cube.yaml", "--smoke", "-q", "-o", tempfile.mkdtemp() + "/out"])
+finally:
+    print(json.dumps(found))
+"""
 SCENES = ("slab", "loaf", "cube", "chocolate_pour", "slump", "loaf_oven_spring")
 
 
@@ -80,6 +98,11 @@ def edit(place: Path, cache: Path) -> dict[str, float]:
     return scene(place, cache, "cube")
 
 
+def text(place: Path, cache: Path) -> dict[str, float]:
+    found = json.loads(timed(place, cache, TEXT)[1].strip().splitlines()[-1])
+    return {name: count / 1000 for name, count in zip(("all", "apart and together", "counts of users"), found, strict=True)}
+
+
 def warm(place: Path, cache: Path) -> dict[str, float]:
     found = {}
     for dim, dtype, n in (("3", "f64", "64"), ("2", "f32", "256")):
@@ -93,6 +116,7 @@ ROWS = {name: lambda place, cache, name=name: scene(place, cache, name) for name
     "main": lambda place, cache: timed(place, cache, MPM, "sweep", "configs/scenes/loaf.yaml", "-q", "-o", tempfile.mkdtemp(dir=cache))[0],
     "edit": edit,
     "ball": lambda place, cache: timed(place, cache, BALL)[0],
+    "text": text,
     "warm": warm,
 }
 
