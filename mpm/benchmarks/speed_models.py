@@ -5,7 +5,8 @@ disc          seconds of the Robin disc at 3e-4 and 5e-5, from the config to the
 loaf          seconds of a point of configs/scenes/loaf.yaml after the first: 780 s of baking with its latent front
 apart         ns a particle-step of two cubes in opposite corners of a grid of 128^3, and side by side
 landing N     ms of 16 steps and of a heat step of a warm cube of 512 000 particles that lies on the floor, by N threads, and its bits
-lying [f32]   ns a particle-step of a cube of 108 000 particles that lies on the floor: by contact, and by a mirror of the wall, which asks for no contact
+lying [f32]   ns a particle-step of a cube of 108 000 particles that lies on the floor: by contact, by contact while it slides and rubs, and by a mirror of the
+              wall, which asks for no contact
 slump         ns a particle-step of a point of configs/scenes/slump.yaml after the first: all of a run, its records and frames included
 points        material-point steps a second of relaxation with the radial map, a thousand points in one call, all that a point costs included
 Run them pinned to one core of an idle machine.
@@ -183,10 +184,10 @@ def lying(dtype: str = "f64") -> dict:
     from mpm.study.phases import Bench
 
     made = {}
-    for name, wall in (("contact_ns", "contact"), ("mirror_ns", "slip")):
+    for name, wall, speed in (("contact_ns", "contact", 0.0), ("sliding_ns", {"contact": {"friction": 0.3}}, 0.5), ("mirror_ns", "slip", 0.0)):
         made[name] = Bench(load({
             "title": "Cube on a floor", "grid": {"dimension": 3, "size": [1, 1, 1], "cell": 1 / 32}, "walls": {"bottom": wall}, "gravity": [0, 0, -9.81],
-            "bodies": {"cube": {"shape": {"box": {"lower": [0.14, 0.14, 0.0], "upper": [0.86, 0.86, 0.72]}}, "material": "rubber"}},
+            "bodies": {"cube": {"shape": {"box": {"lower": [0.14, 0.14, 0.0], "upper": [0.86, 0.86, 0.72]}}, "material": "rubber", "velocity": [speed, 0, 0]}},
             "materials": {"rubber": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}}, "time": {"end": 1},
             "method": {"precision": {"f32": "float32", "f64": "float64"}[dtype]},
         }))  # fmt: skip
