@@ -85,14 +85,14 @@ def test_mutated_configs(seed, tmp_path, loaf, block):
     file = tmp_path / "config.yaml"
     for _ in range(60):
         file.write_text(mutated(chance.choice(texts), chance), encoding="utf-8")
-        start = time.perf_counter()
+        start = time.process_time()
         try:
             plan(load(file, {"kappa": "0.3"} if chance.random() < 0.3 else None))
         except ConfigError as error:
             assert error.problems
             for one in error.problems:
                 assert (one.line > 0 and one.column > 0) or one.file.startswith("--set"), one
-        assert time.perf_counter() - start < 3
+        assert time.process_time() - start < 3
 
 
 @pytest.mark.parametrize("seed", range(3))
