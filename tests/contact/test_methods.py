@@ -93,7 +93,7 @@ def test_bars_that_meet_by_every_transfer(dimension, transfer):
     assert 0.85 < -np.sum(s[f"force_a_b_{up(dimension)}"]) * 0.1 / p[0] < 1.02
 
 
-@pytest.mark.parametrize("dimension", [one if one == 2 else pytest.param(one, marks=pytest.mark.slow) for one in DIMENSIONS])
+@pytest.mark.parametrize("dimension", [pytest.param(one, marks=pytest.mark.wide if one == 2 else pytest.mark.slow) for one in DIMENSIONS])
 def test_single_precision(dimension):
     """A block at rest in float32: the floor bears its weight to a thousandth. Compiled: plain Python knows one kind of number only."""
     s = finals(dropped(dimension, 0.0, end=6.0, method={"precision": "float32"}))

@@ -118,7 +118,7 @@ def test_adiabatic_compression(core, dimension):
 STRETCH = {1: ("uniaxial_stretch", 1), 2: ("planestrain_inplane_stretch", 2), "axisymmetric": ("free3D_J", 1), 3: ("free3D_J", 1)}
 
 
-@pytest.mark.parametrize("dimension", [pytest.param(each, marks=[] if each == 2 else pytest.mark.wide) for each in DIMENSIONS])
+@pytest.mark.parametrize("dimension", [pytest.param(each, marks=pytest.mark.plain if each == 1 else pytest.mark.wide) for each in DIMENSIONS])
 def test_free_thermal_expansion(core, dimension):
     """A body that is warmer than its reference swells to its exact stretch (thermal_expansion.csv); PIC damps the ringing.
 
