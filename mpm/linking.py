@@ -23,7 +23,7 @@ from numba.core.dispatcher import Dispatcher, _FunctionCompiler
 from mpm import compiling
 from mpm.shortcuts import LENT, SHORTCUTS, building, stock
 
-TESTED = (0, 66), (0, 68)  # first and last (major, minor) tried: the last by the default tests, the first by tests/test_linking.py alone
+TESTED = (0, 66), (0, 68)  # first and last (major, minor) that passed the default tests (.ci/numba_versions.py)
 
 
 class Entry:
