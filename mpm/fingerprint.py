@@ -30,7 +30,7 @@ def rooms() -> dict[str, dict[str, str]]:
 
 
 def digest(parts) -> str:
-    """Of files, each a dictionary of text by place."""
+    """Hash of files (16 hex digits): dictionaries of their text by place."""
     made = hashlib.sha256()
     for files in parts:
         for place, text in files.items():
@@ -40,11 +40,12 @@ def digest(parts) -> str:
 
 @functools.cache
 def of_room(room: str) -> str:
+    """Hash of the files of one room."""
     return digest([rooms()[room]])
 
 
 def hash_of(names) -> str:
-    """Of rooms."""
+    """Hash of all files of the rooms named."""
     return digest([{name: of_room(name) for name in names}])
 
 

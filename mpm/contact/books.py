@@ -7,8 +7,8 @@ from mpm.state import Thermal
 
 
 def series(met, axes: tuple[str, ...], since: float, span: float, time: float):
-    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. `since` the last record impulses have acted, and steps have gone
-    on for `span`, to `time` [s].
+    """(dataset name, value) of every obstacle that is met; what was gathered starts anew. Since the last record impulses have acted for `since`, and bodies
+    have moved for `span`, up to `time` [s]; the two differ by half a step in the first record.
 
         force    on bodies by a wall or tool; on the first of a pair by the second
         travel   of a tool since the start

@@ -56,8 +56,8 @@ class Meeting:
     passing: np.ndarray = field(init=False)  # (B, B) whether heat ever passes between two bodies; links may be 0 for a while (mpm.contact.course)
     warms: bool = False  # whether heat passes by touch
     unforeseen: tuple[int, int] | None = field(default=None, init=False)
-    told: float = field(default=0.0, init=False)  # up to when impulses were recorded, and touch [s]
-    shown: float = field(default=0.0, init=False)
+    told: float = field(default=0.0, init=False)  # up to when impulses were recorded [s]
+    shown: float = field(default=0.0, init=False)  # up to when areas in touch were recorded [s]
     left: float = field(default=-1.0, init=False)  # how far anything may still move before something can be near [m]
     buffers: tuple | None = field(default=None, init=False)
     scratch: np.ndarray | None = field(default=None, init=False)
