@@ -15,7 +15,7 @@ from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import apart, pose, press, settle, speed
 from mpm.contact.sums import add_up, hold_good, make_room, new_sums
-from mpm.contact.tools import arm, carry, move_tools, place_tools
+from mpm.contact.tools import arm, follow, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
 from mpm.integrate.fbar import average_all
@@ -166,17 +166,18 @@ def finish(method, touching, skin, sums, grids, now, pace, problem):
 def keep_books(space, touching, skin, problem, pace):
     """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
     D, B, pressed, contacts, impulse = directions(space), len(touching.first) - 1, False, problem.contacts, problem.impulse
-    way, moment, still, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(WIDE)
+    way, moment, goes, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(WIDE)
     touching.warm[:], dt = 0.0, pace.dt
     for i in range(len(impulse)):
         s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
         a, b, to = contacts.body[i, 0], contacts.body[i, 1], contacts.against[i]
         arm(touching.tools, to - BODY - B if to >= BODY + B else -1, contacts.point[i, 0], way)
         cross(way, impulse[i], moment)
-        still[:] = 0.0
-        carry(touching.tools, contacts.free[i], still)
         for c in range(D):
-            touching.worked[0] += impulse[i, c] * (contacts.given[i, c] - still[c])
+            goes[c] = contacts.given[i, c]
+        follow(touching.tools, contacts.free[i], goes)
+        for c in range(D):
+            touching.worked[0] += impulse[i, c] * goes[c]
             along += impulse[i, c] * contacts.normal[i, c]
             touching.pushed[a, to, c] += impulse[i, c]
             if b >= 0:

@@ -1,7 +1,7 @@
 """Tools: rigid bodies that move as they are told, or as a force moves them along one direction. Each is a signed distance that is moved and turned.
 
     g = phi(R^T (x - c)),   n = R grad phi,   velocity of its surface v + W (x - c)
-    free: M dw = (F - sum lambda . e) dt along e = F/|F|, with the contacts' impulses lambda on the bodies (solve.py)
+    free: M dw = (F - sum lambda . e) dt along e = F/|F|, with the contacts' impulses lambda on the bodies (solve.py), whose work is lambda . (v + w)/2
 
 Fails when   a piece of a body is larger than the tool: its corners enter between pieces (refused at the start: thinner than a cell)
 """
@@ -36,6 +36,7 @@ class Tools(NamedTuple):
     centre: np.ndarray  # (T, D) [m]
     turn: np.ndarray  # (T, D, D)
     v: np.ndarray  # (T, D) of the centre [m/s]
+    before: np.ndarray  # (T, D) the same, a step earlier [m/s]
     spin: np.ndarray  # (T, D, D) W [1/s]
     force: np.ndarray  # (T, D) on a free one [N]
     light: np.ndarray  # (T,) 1/M of a free one, else 0 [1/kg]
@@ -63,6 +64,7 @@ def place_tools_tools(tools, step, dt, acts):
         tools.there[t] = tools.present[step, t]
         for a in range(tools.v.shape[1]):
             tools.centre[t, a] = tools.path[step, t, a] + tools.shift[t, a]
+            tools.before[t, a] = tools.v[t, a]
             for c in range(tools.v.shape[1]):
                 tools.turn[t, a, c] = tools.turns[step, t, a, c]
             if tools.light[t] > 0.0:
@@ -122,6 +124,24 @@ def carry_tools(tools, t, u):
     if t >= 0:
         for a in range(len(u)):
             u[a] -= tools.v[t, a]
+
+
+@role(inline=True)
+def follow(tools, t, u):
+    """u (D,) plus the velocity of a free tool while impulses act: the mean of what it was and is, so that their work is what the tool loses."""
+    raise TypeError(f"no tools of {type(tools).__name__}")
+
+
+@follow.register(NoTools)
+def follow_no_tools(tools, t, u):
+    return None
+
+
+@follow.register(Tools)
+def follow_tools(tools, t, u):
+    if t >= 0:
+        for a in range(len(u)):
+            u[a] += 0.5 * (tools.before[t, a] + tools.v[t, a])
 
 
 @role(inline=True)

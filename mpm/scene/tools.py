@@ -43,7 +43,8 @@ def drive(experiment) -> Drive | None:
         kind=np.array([kind for kind, _, _, _ in shapes]), size=np.stack([size for _, _, size, _ in shapes]), corner=np.zeros((T, V, 2)),
         corners=np.array([len(corner) for _, _, _, corner in shapes]), mesh=together(meshes), bound=np.zeros(T),
         mu=np.array([at(programme(tool.friction), 0.0) for tool in experiment.tools.values()]),
-        there=np.ones(T, np.bool_), centre=np.zeros((T, D)), turn=np.tile(np.eye(D), (T, 1, 1)), v=np.zeros((T, D)), spin=np.zeros((T, D, D)),
+        there=np.ones(T, np.bool_), centre=np.zeros((T, D)), turn=np.tile(np.eye(D), (T, 1, 1)), v=np.zeros((T, D)), before=np.zeros((T, D)),
+        spin=np.zeros((T, D, D)),
         force=np.zeros((T, D)), light=np.zeros(T), way=np.zeros((T, D)), shift=np.zeros((T, D)), path=np.zeros((MOST_STEPS + 1, T, D)),
         turns=np.zeros((MOST_STEPS + 1, T, D, D)), present=np.zeros((MOST_STEPS, T), np.bool_))  # fmt: skip
     told = []

@@ -38,6 +38,22 @@ def test_a_bar_that_hits_a_free_tool(plain):
     assert speed == pytest.approx(0.01 * (1 - np.exp(-2.0)), rel=0.07)
 
 
+def test_tools_that_forces_drive_together_give_what_they_lose(plain):
+    """Weights hit a bar from both sides and bounce. In flight `work_loads` is F s - M v^2/2 of both; it was a third of it, and energy came from nowhere."""
+    scene = weighed(0.43, force=[0.1], mass=1.0)
+    scene["bodies"]["bar"]["shape"]["box"] = {"lower": [1.53], "upper": [2.53]}
+    scene["tools"]["other"] = {"shape": {"box": {"lower": [2.73], "upper": [3.63]}}, "motion": {"force": [-0.1], "mass": 1.0}}
+    scene["time"], scene["output"]["every"] = {"end": 7.5, "step": 0.0625}, 0.125
+    (run,) = plain([scene])
+    s, t = run["series"], run["times"]
+    lost = -0.5 * sum(np.gradient(s[f"travel_{name}_x"], t) ** 2 for name in ("weight", "other"))
+    lost += 0.1 * (s["travel_weight_x"] - s["travel_other_x"])
+    flies = (s["force_weight_x"] == 0.0) & (t > 5.0) & (t < 7.0)
+    assert flies.sum() > 8
+    assert s["work_loads"][flies] == pytest.approx(lost[flies], rel=1e-10)
+    assert s["dissipation_transfer"].min() > -1e-4 * s["work_loads"].max()
+
+
 def test_a_tool_pushes_a_body_into_another_and_both_against_the_side(plain):
     """Far off at the start, so that nothing else would bring them there: it ended as `unprepared`. Both are pressed to 0.9: P = E ln F/F."""
     bar = lambda low: {"shape": {"box": {"lower": [low], "upper": [low + 0.5]}}, "material": "m"}  # noqa: E731
