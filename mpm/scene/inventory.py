@@ -31,10 +31,13 @@ def physics(experiment) -> dict[str, list[str]]:
     present |= {f"inflow: {name}" for name, body in experiment.bodies.items() if body.inflow is not None}
     steady = all(isinstance(one, float) for one in experiment.gravity or ())
     present |= {"gravity" if steady else "gravity: over time"} if experiment.gravity is not None else set()
-    present |= set(pairs(experiment)) | {f"tool: {name}, {tool_in_words(tool)}" for name, tool in experiment.tools.items()}
+    far = apart(experiment)
+    present |= set(pairs(experiment, far)) | {f"tool: {name}, {tool_in_words(tool)}" for name, tool in experiment.tools.items()}
     said = {text.split(":")[0] for text in present}
     parts = ("elastic", "flow", "heat", "expansion", "heating", "exchange", "source", "load", "gravity")
-    return {"compiled": sorted(present), "absent": [part for part in parts if part not in said]}
+    never = [f"contact of {one} and {other}, which nothing brings together" for one, other in far]
+    never = never if len(never) <= MANY else [f"contact of {len(never)} pairs that nothing brings together"]
+    return {"compiled": sorted(present), "absent": [part for part in parts if part not in said] + never}
 
 
 def tool_in_words(tool) -> str:
@@ -44,12 +47,14 @@ def tool_in_words(tool) -> str:
     return f"{tool.shape.kind}, {'moves by ' + ' and '.join(ways) if ways else 'stands'}{', exchanges heat' if tool.heat is not None else ''}"
 
 
-def pairs(experiment) -> list[str]:
-    """How every two bodies meet where any moves, or touch where none does; their number where they are more than MANY."""
+def pairs(experiment, far: list[tuple[str, str]]) -> list[str]:
+    """How every two bodies meet where any moves, but those `far` off, or touch where none does; their number where they are more than MANY."""
     known = {frozenset(pair.between): pair for pair in experiment.contacts}
     moving = [name for name, body in experiment.bodies.items() if experiment.materials[body.material].elastic is not None]
     found = []
     for two in combinations(experiment.bodies if moving else (), 2):
+        if two in far:
+            continue
         pair, warm = known.get(frozenset(two)), all(experiment.materials[experiment.bodies[name].material].heat is not None for name in two)
         rubs = "slide" if not pair or not pair.friction else f"rub ({pair.friction:g})" if isinstance(pair.friction, float) else "rub (over time)"
         slides = "are welded" if pair and pair.welded else "do not slide" if pair and pair.stick else rubs
@@ -60,6 +65,18 @@ def pairs(experiment) -> list[str]:
     if not moving and len(experiment.bodies) > 1 and experiment.grid.dimension != 0:
         found = at_rest(experiment, known)
     return found if len(found) <= MANY else [f"contact: {len(found)} pairs of bodies, {len(known)} of them named"]
+
+
+def apart(experiment) -> list[tuple[str, str]]:
+    """The pairs of bodies that move, or of which one does, and that nothing brings near each other within the run."""
+    names, bodies = list(experiment.bodies), experiment.bodies.values()
+    if len(names) < 2 or not experiment.moving or all(experiment.materials[body.material].elastic is None for body in bodies):
+        return []
+    from mpm.scene.meeting import out_of_reach, reaches  # needs numba
+
+    _, boxes, travels = reaches(experiment)
+    return [(names[b], names[c]) for b, c in combinations(range(len(names)), 2)
+            if out_of_reach((boxes[b], boxes[c]), (travels[b], travels[c]), experiment.grid.cell)]  # fmt: skip
 
 
 def at_rest(experiment, known) -> list[str]:

@@ -49,9 +49,7 @@ class Meets:
 def plan_meetings(experiment, sides) -> Meets:
     """What can meet, from the config alone; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
     names, grid, B = list(experiment.bodies), experiment.grid, len(experiment.bodies)
-    outlines = [shape(body.shape, grid.dimension).moved(np.array(experiment.method.offset) * grid.cell) for body in experiment.bodies.values()]
-    boxes = [outline.bounds() for outline in outlines]
-    travels = [reach(experiment, name, low, high) for name, (low, high) in zip(names, boxes, strict=True)]
+    outlines, boxes, travels = reaches(experiment)
     walls, stops, pairs, links = np.full((B, 3, 2), CONTACT), np.full((B, 3, 2), -1.0), np.full((B, B), -1.0), np.zeros((B, B))
     for number, side in enumerate(sides):
         axis, upper, named = number // 2, number % 2, experiment.walls.get(side)
@@ -75,8 +73,7 @@ def plan_meetings(experiment, sides) -> Meets:
     for b in range(B):
         for c in range(B):
             pair = known.get(frozenset((names[b], names[c])))
-            apart = np.linalg.norm(np.maximum(0.0, np.maximum(boxes[b][0] - boxes[c][1], boxes[c][0] - boxes[b][1])))
-            far = apart >= travels[b].max() + travels[c].max() + APART * grid.cell
+            far = out_of_reach((boxes[b], boxes[c]), (travels[b], travels[c]), grid.cell)
             if b == c or (far and not (held[b] or held[c])):
                 continue
             if fields[b] != fields[c]:
@@ -94,6 +91,21 @@ def plan_meetings(experiment, sides) -> Meets:
     found = Meets(walls, stops, pairs, fields, links, held, bool(experiment.tools))
     refuse_methods(experiment, found)
     return found
+
+
+def reaches(experiment) -> tuple[list, list, list]:
+    """(outlines, their boxes, `reach`) of the bodies in the grid's coordinates."""
+    grid = experiment.grid
+    outlines = [shape(body.shape, grid.dimension).moved(np.array(experiment.method.offset) * grid.cell) for body in experiment.bodies.values()]
+    boxes = [outline.bounds() for outline in outlines]
+    return outlines, boxes, [reach(experiment, name, low, high) for name, (low, high) in zip(experiment.bodies, boxes, strict=True)]
+
+
+def out_of_reach(boxes, travels, cell: float) -> bool:
+    """Whether two bodies never come near each other."""
+    (low, high), (lowest, highest) = boxes
+    apart = np.linalg.norm(np.maximum(0.0, np.maximum(low - highest, lowest - high)))
+    return bool(apart >= travels[0].max() + travels[1].max() + APART * cell)
 
 
 def refuse_methods(experiment, meets: Meets) -> None:

@@ -10,6 +10,7 @@ from mpm.config.variation import digits, rounded
 from mpm.sweep import engine
 from mpm.sweep.api import default_out
 from mpm.sweep.case_list import skipped
+from mpm.sweep.plan_points import costs, told_together
 from mpm.sweep.queue import Points, missing
 from mpm.sweep.resources import Resources, size
 from mpm.sweep.store import Store
@@ -24,8 +25,8 @@ def outlook(
     tolerance: float | None = None,
     heard: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Points and dimensions of the sweep, which are there; of the first that would run `estimate`, groups and smaller models, with pilots at a tolerance.
-    `heard` is told of each pilot as it begins."""
+    """Points and dimensions of the sweep, which are there; of the first that would run `estimate`, groups and smaller models, with pilots at a tolerance; of
+    several (`over_points`) what they cost, and the physics of all. `heard` is told of each pilot as it begins."""
     from mpm.scene.groups import groups
     from mpm.sweep.cases import plan as plan_of
 
@@ -34,7 +35,11 @@ def outlook(
     lines, _ = store.lines(points.ids)
     due = missing(points, lines, rerun)
     first = points.cases[points.ids[due[0]]] if len(due) else plan.cases[0] if plan.cases else None
-    cost = estimate(first.experiment) if first else {}
+    cost, over = estimate(first.experiment) if first else {}, {}
+    if len(due) > 1 and "seconds" in cost:
+        over = costs(points, due, cost)
+        cost |= {"physics": told_together(points, due)} if "physics" in cost else {}
+    each = cost | over
     explicit = not cost.get("mechanics", "explicit").startswith("implicit")
     step = first.experiment.time.end / cost["steps"] if cost.get("steps") and cost.get("particles") and explicit and first else None
     return {
@@ -48,13 +53,14 @@ def outlook(
         "due": len(due),
         "dimensions": [dimension(dim) for dim in plan.dims],
         "estimate": cost,
+        "over_points": over,
         "groups": [group.told() for group in groups(first.experiment, step)] if first else [],
         "smaller": smaller(first.experiment, tolerance, heard) if first and "refused" not in cost else None,
         "jobs": jobs,
         "compiling_seconds": compiling.expected(first.experiment) if first else 0.0,
-        "seconds": cost["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in cost else None,
-        "output_bytes": cost["output_bytes"] * len(due) if "output_bytes" in cost else None,
-        "memory_bytes": cost["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in cost else None,
+        "seconds": each["seconds"] * len(due) / max(1, min(jobs, len(due))) if "seconds" in each else None,
+        "output_bytes": round(each["output_bytes"] * len(due)) if "output_bytes" in each else None,
+        "memory_bytes": each["memory_bytes"] * max(1, min(jobs, len(due))) if "memory_bytes" in each else None,
     }
 
 
@@ -130,10 +136,13 @@ def in_words(found: dict[str, Any]) -> str:
 
         told += models_in_words(found["smaller"])
     if "seconds" in cost:
-        told.append(f"time      {cost['seconds']:.3g} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
+        over = found["over_points"] or {"least": cost["seconds"], "most": cost["seconds"], "memory_bytes": cost["memory_bytes"], "refused": []}
+        one = f"{cost['seconds']:.3g}" if over["most"] < 1.05 * over["least"] else f"{over['least']:.2g} to {over['most']:.2g}"
+        told.append(f"time      {one} s a point, {found['seconds']:.3g} s in all on {found['jobs']} workers (estimates)")
         if found["compiling_seconds"]:
             told.append(f"          not compiled yet: about {found['compiling_seconds']:.0f} s more, once on this machine")
-        told.append(f"memory    {size(cost['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
+        told.append(f"memory    {size(over['memory_bytes'])} a point    output {size(found['output_bytes'])} in all")
+        told += [f"refused   {said}" for said in dict.fromkeys(over["refused"])]
     return "\n".join(told)
 
 

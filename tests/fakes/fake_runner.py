@@ -41,6 +41,10 @@ def warm(experiment):
     mark("warm")
 
 
+def physics(experiment):
+    return {"compiled": ["heat"], "absent": ["mechanics", "flow"]}
+
+
 def estimate(experiment):
     return {
         "particles": 100,
@@ -51,7 +55,7 @@ def estimate(experiment):
         "output_bytes": 2e4,
         "limits": {"conduction": 0.25, "exchange": 0.5},
         "binds": "conduction",
-        "physics": {"compiled": ["heat"], "absent": ["mechanics", "flow"]},
+        "physics": physics(experiment),
     }
 
 
