@@ -24,7 +24,7 @@ class Course:
     gravity: tuple = ()  # a programme a direction [m/s2]; nothing where it stays
     pasts: tuple[np.ndarray, ...] = ()  # `past` of loads and forces that jump
     times: tuple[float, ...] = ()  # at which those do [s]
-    block: tuple = field(default=(), init=False)  # momentum and mass as a block began, gravity at its steps' ends, dt
+    block: tuple = field(default=(), init=False)  # motion as a block began, gravity at its steps' ends, dt
 
     @property
     def turns(self) -> tuple[float, ...]:
@@ -50,22 +50,25 @@ class Course:
         if self.gravity:
             rows = np.array([[at(during(one, start), start + k * dt) for one in self.gravity] for k in range(steps + 1)])
             first = past * np.array([at(before(one, start), start) for one in self.gravity]) + (1.0 - past) * rows[0]
-            self.block, scene.gravity = (momentum(scene), rows, dt), np.concatenate([first[None], rows[1:]])
+            self.block, scene.gravity = (motion(scene), rows, dt), np.concatenate([first[None], rows[1:]])
 
     def work(self, scene) -> float:
         """Of gravity in the block that is over [J]: sum over steps of its mean at both ends times momentum and dt. 0 where gravity stays: that is a potential;
         0 of a block of no steps, which compiles only.
 
-        Momentum in the middle of each step is what gravity made of that at the beginning; what other forces gave is spread evenly.
+        Momentum in the middle of each step is what gravity made of that at the beginning, and what other forces gave is spread evenly; its sum is how far
+        masses went. Without this what lies still while gravity grows would seem to rise.
         """
         if not self.gravity or len(self.block[1]) == 1:
             return 0.0
-        (p, mass), rows, dt = self.block
+        (p, mass, place), rows, dt = self.block
+        momentum, _, there = motion(scene)
         half = 0.5 * mass * dt if scene.references else 0.0  # velocities of the total frame are those of the ends of steps
         fallen = p - half * rows[0] + mass * dt * np.cumsum(rows[:-1], axis=0)
-        rest = momentum(scene)[0] - half * rows[-1] - fallen[-1]
-        shares = np.arange(1, len(rows)) / (len(rows) - 1)
-        return float(0.5 * dt * np.sum((rows[1:] + rows[:-1]) * (fallen + shares[:, None] * rest)))
+        rest = momentum - half * rows[-1] - fallen[-1]
+        moves = fallen + np.arange(1, len(rows))[:, None] / (len(rows) - 1) * rest
+        moves += (there - place) / (dt * len(moves)) - moves.mean(axis=0)
+        return float(0.5 * dt * np.sum((rows[1:] + rows[:-1]) * moves))
 
 
 def strongest(scene) -> np.ndarray:
@@ -75,11 +78,12 @@ def strongest(scene) -> np.ndarray:
     return np.array([max(bounds(one), key=abs) for one in scene.course.gravity])
 
 
-def momentum(scene) -> tuple[np.ndarray, float]:
-    """(D,) [kg m/s], and the mass [kg] that moves."""
+def motion(scene) -> tuple[np.ndarray, float, np.ndarray]:
+    """(D,) momentum [kg m/s], the mass that moves [kg], and its mass times place (D,) [kg m]."""
     D, held = scene.gravity.shape[1], scene.meeting.held if scene.meeting is not None and scene.meeting.stands else [False] * len(scene.bodies)
     if scene.references:
-        parts = [(one.m[one.active].astype(float), one.v[one.active, :D].astype(float)) for one in scene.references]
+        parts = [(one.m[one.active].astype(float), one.v[one.active, :D], one.u[one.active, :D]) for one in scene.references]
     else:
-        parts = [(body.particles.m.astype(float), body.particles.v.astype(float)) for body, still in zip(scene.bodies, held, strict=True) if not still]
-    return sum(m @ v for m, v in parts), float(sum(m.sum() for m, _ in parts))
+        free = (body.particles for body, still in zip(scene.bodies, held, strict=True) if not still)
+        parts = [(some.m.astype(float), some.v, some.x) for some in free]
+    return sum(m @ v.astype(float) for m, v, _ in parts), float(sum(m.sum() for m, *_ in parts)), sum(m @ x.astype(float) for m, _, x in parts)

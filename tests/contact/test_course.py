@@ -37,6 +37,16 @@ def test_free_fall_under_gravity_that_rises(plain):
         assert off[1] < 0.3 * off[0] and off[1] < 0.01 * 0.5
 
 
+@pytest.mark.parametrize("method", [{}, {"frame": "total"}, {"mechanics": "implicit"}])
+def test_work_of_gravity_that_grows_on_what_lies(plain, method):
+    """A bar that rests and sags as gravity grows stores it all. By momentum alone a quarter was lacking, and in the total frame it was -65 times that."""
+    scene = FREE | {"gravity": [over([0, 40.0], [0, -0.05])], "walls": {"left": "stick"}, "time": {"end": 40.0}, "method": method}
+    scene["bodies"] = {"bar": scene["bodies"]["bar"] | {"shape": {"box": {"lower": [0.0], "upper": [1.0]}}}}
+    (run,) = plain([scene])
+    s = run["series"]
+    assert run["kind"] == "completed" and s["work_loads"][-1] == pytest.approx(s["energy_elastic"][-1], rel=0.02) and s["energy_elastic"][-1] > 0.0
+
+
 def test_a_block_of_no_steps_does_no_work():
     """With it a run compiles ahead: it ended there with an error."""
     scene = build(mpm.load(FREE | {"gravity": [over([0, 0.5], [0, -4.0])]}))
