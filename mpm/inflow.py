@@ -14,7 +14,7 @@ import numpy as np
 from mpm.diagnostics import heat_since
 from mpm.follow import Carried
 from mpm.heat.programmes import integral
-from mpm.state import PER_PARTICLE, Radiation, Surface, Thermal, as_heated, as_moved
+from mpm.state import PER_PARTICLE, Exposure, Radiation, Surface, Thermal, as_heated, as_moved
 
 SOON = 1e-6  # of the shortest time between two layers: what is so near is now
 
@@ -23,11 +23,11 @@ def first(part: Any, n: int, s: int) -> Any:
     """Views of the first n particles and s pieces of surface in nested named tuples."""
     if not (isinstance(part, tuple) and hasattr(part, "_fields")):
         return part
-    if isinstance(part, Radiation):
+    if isinstance(part, Radiation | Exposure):
         return type(part)(*(array[:s] for array in part))
     if isinstance(part, Surface):
         kept = {name: getattr(part, name)[:s] for name in ("owner", "area", "offset", "beta", "outside", "drift", "flux")}
-        return part._replace(row=part.row[:n], radiation=first(part.radiation, n, s), **kept)
+        return part._replace(row=part.row[:n], radiation=first(part.radiation, n, s), exposure=first(part.exposure, n, s), **kept)
     rows = PER_PARTICLE.get(type(part), ())
     return type(part)(*(value[:n] if name in rows else first(value, n, s) for name, value in zip(part._fields, part, strict=True)))
 

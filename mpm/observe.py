@@ -216,6 +216,7 @@ class Recorder:
         yield from self.setting()
         yield "area_exchanging", self.exchanging()
         yield "heat_exchanged", clock.exchanged
+        yield from ((f"heat_{name}", heat) for name, heat in zip(scene.hot, clock.given.tolist(), strict=True))
         made = total - clock.exchanged - clock.local - getattr(scene.inflow, "heat", 0.0)
         yield from (("heat_ledger", made), ("energy_ledger", made - self.gone))
         for name in self.places:

@@ -58,6 +58,7 @@ class Scene:
     safety: float
     heat_step: float | None
     surroundings: tuple = ()  # by body: mpm.integrate.surroundings.Surroundings or None; seams: mpm.integrate.fracture_surface.Seams or None
+    hot: tuple[str, ...] = ()  # names of the walls and tools that have heat
     seams: tuple = ()
     outlines: tuple = ()  # mpm.follow.Carried: points of its surface; without them no extents are recorded
     heat: HeatMethod = HeatMethod()
@@ -101,6 +102,7 @@ class Clock:
         self.time, self.steps, self.heat_steps, self.implicit, self.iterations = 0.0, 0, 0, 0, 0  # implicit: heat steps, and their solver's iterations
         self.bound, self.told = {}, {}  # steps by what bound them; what implicit mechanics counts
         self.exchanged = self.local = self.dissipated = self.repaired = self.unrepaired = self.worked = self.swelled = self.softened = 0.0
+        self.given = np.zeros(len(scene.hot))  # heat that each hot wall and tool has given to bodies [J]
         self.swell, self.spent, self.first_step, self.shortest, self.longest = 1.0, 0.0, None, math.inf, 0.0  # largest J; time before a cut; steps [s]
         self.lag, self.touching = 0.0, False  # how far velocities lie behind positions [s] (contact/insync.py); whether the last block looked for contacts
         self.seen = np.tile([math.inf, -math.inf], (len(scene.bodies), 1))  # lowest and highest temperature of body and surroundings so far

@@ -84,6 +84,20 @@ class Thermal(NamedTuple):
     alpha: Any  # law [J/(kg K)]
 
 
+class NoExposure(NamedTuple):
+    """Nobody asks what each wall and tool gave."""
+
+
+class Exposure(NamedTuple):
+    """What each piece saw in one heat step, so that the heat of each wall and tool is known after it (integrate/surroundings.py): integrals over time and
+    area, weighted as the step weights its stages.
+    """
+
+    area: np.ndarray  # (S,) of 1 [m^(D-1) s]
+    theta: np.ndarray  # (S,) of the piece's temperature less zero [K m^(D-1) s]
+    part: np.ndarray  # (S,) of the share of the heat step that is gone [m^(D-1) s]
+
+
 class Surface(NamedTuple):
     """Pieces of a body's surface that exchange heat, each at an offset from its particle (docs/physics.md 11).
     What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
@@ -99,6 +113,7 @@ class Surface(NamedTuple):
     drift: np.ndarray  # (S,) its change over the heat step [K]
     flux: np.ndarray  # (S,) heat into the body [W/m2]
     radiation: Any  # Radiation or NoRadiation
+    exposure: Any = NoExposure()  # or Exposure
 
 
 class Radiation(NamedTuple):
@@ -260,7 +275,7 @@ def as_moved(bodies: tuple) -> tuple:
     return tuple(
         body._replace(
             thermal=body.thermal._replace(kappa=Unread()) if isinstance(body.thermal, Thermal) else body.thermal,
-            surface=body.surface._replace(radiation=NoRadiation()) if isinstance(body.surface, Surface) else body.surface,
+            surface=body.surface._replace(radiation=NoRadiation(), exposure=NoExposure()) if isinstance(body.surface, Surface) else body.surface,
         )
         for body in bodies
     )

@@ -82,6 +82,7 @@ def conduct(scene, clock, work, begun: float, dt: float, now: Limits) -> Outcome
         if between is not None:
             moved, left = keep_between(scene.space, body, work.rows, walls, *between)
             clock.repaired, clock.unrepaired = clock.repaired + moved, clock.unrepaired + left
+    clock.given = sum((one.given(body.surface, len(scene.hot)) for _, body, one in around), clock.given)
     if met is not None:
         met.warmed()
     clock.heat_steps += 1

@@ -76,15 +76,20 @@ def taken(name: str) -> Iterator[Finding]:
 
 
 def apart(experiment: Any) -> Iterator[Finding]:
-    """Every series has a name of its own in the dataset, where dots become underscores: of probes, of what bodies do to each other, and observables."""
+    """Every series has a name of its own in the dataset, where dots become underscores: of probes, of what walls, tools and bodies do, and observables."""
     from mpm.records.variables import VARIABLES, dataset_name, of_probe
 
     seen = {variable: f"the probe {probe}" for probe in experiment.output.probes for variable in of_probe(probe) if variable not in VARIABLES}
-    met = {f"{one}_{two}" for one, two in combinations(experiment.bodies, 2)}
+    hot = [(section, name) for section in ("walls", "tools") for name, one in getattr(experiment, section).items() if getattr(one, "heat", None) is not None]
+    met = {*(f"{one}_{two}" for one, two in combinations(experiment.bodies, 2)), *(name for _, name in hot)}
     for one, two in combinations(experiment.bodies, 2):
         name, told = f"heat_{one}_{two}", f"the heat between {one} and {two}"
         if (other := seen.setdefault(name, told)) != told:
             yield Finding(("bodies", two), f"{other} and {told} would both be {name} in the dataset", "a body of another name", on_key=True)
+    for section, one in hot:
+        name, told = f"heat_{one}", f"the heat from {one}"
+        if (other := seen.setdefault(name, told)) != told:
+            yield Finding((section, one), f"{other} and {told} would both be {name} in the dataset", "a probe or a body of another name", on_key=True)
     for index, name in enumerate(experiment.output.observables):
         other = seen.setdefault(dataset_name(name), name)
         if other != name and name.removeprefix("heat.") not in met:
@@ -136,7 +141,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
             "force.<wall, tool or pair>_<direction>",
             "torque.<wall, tool or pair>_<direction>",
             "area.<wall, tool or pair>",
-            "heat.<pair>",
+            "heat.<hot wall or tool, or pair>",
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return

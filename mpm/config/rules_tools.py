@@ -9,7 +9,7 @@ from mpm.config.problems import near
 from mpm.config.rules_scene import conducts, heats, moves, plain_names, vector
 from mpm.config.shapes_fit import misfits
 
-RESERVED = ("total", "exchanged", "ledger", "exchanging")  # heat_total and area_exchanging are other things
+RESERVED = ("total", "exchanged", "ledger", "inflow", "exchanging")  # heat_total and area_exchanging are other things
 
 
 def tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
@@ -70,13 +70,12 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
     what, of = found[:2]
     bodies = list(experiment.bodies)
     pairs = [f"{a}_{b}" for k, a in enumerate(bodies) for b in bodies[k + 1 :]]
-    known = (
-        pairs
-        if what == "heat"
-        else list(experiment.tools)
-        if what in ("travel", *BITES)
-        else [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
-    )
-    if of not in known:
-        said = f"there is no {'pair of bodies' if what == 'heat' else 'tool' if what in ('travel', *BITES) else 'wall, tool or pair of bodies'} {of!r}"
-        yield Finding(("output", "observables", index), said, known or "two bodies", near(of, known), given=name)
+    everything = [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
+    hot = [name for things in (experiment.walls, experiment.tools) for name, one in things.items() if getattr(one, "heat", None) is not None]
+    known = [*hot, *pairs] if what == "heat" else list(experiment.tools) if what in ("travel", *BITES) else everything
+    if of in known:
+        return
+    said = f"there is no {'tool' if what in ('travel', *BITES) else 'wall, tool or pair of bodies'} {of!r}"
+    if what == "heat" and of in everything:
+        said = f"{of} has no `heat`, so it passes none"
+    yield Finding(("output", "observables", index), said, known or "two bodies", near(of, known), given=name)

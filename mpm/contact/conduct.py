@@ -18,7 +18,7 @@ from mpm.heat.exchange import meet
 from mpm.integrate.heat_implicit import GAMMA, combine, conductances, drop_ghosts, inside, load, take, wipe
 from mpm.integrate.heat_matrix import blocks, conjugate_gradients, matrix, product, times
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
-from mpm.integrate.surface_flux import place, temperature_at
+from mpm.integrate.surface_flux import expose, place, temperature_at
 from mpm.jit import kernel
 from mpm.transfer import CHUNK
 
@@ -61,11 +61,12 @@ def stage_matrix(space, body, nodes, walls, box, flow, each, part, first, dt):
 
 
 @kernel
-def stage_loads(space, body, nodes, walls, box, flow, met, dt):
-    """What the stage temperatures load in dt, on to nodes[5], folded; the heat gained through surfaces [J]."""
-    shape, work = extents(space), np.zeros((2 + 3 * directions(space), CHUNK))
+def stage_loads(space, body, nodes, walls, box, flow, met, dt, part):
+    """What the stage temperatures load in dt, `part` of the heat step gone, on to nodes[5], folded; the heat gained through surfaces [J]."""
+    shape, work, pieces = extents(space), np.zeros((2 + 3 * directions(space), CHUNK)), place(body.surface, space, body)
     unfold(nodes[4].reshape(-1, 1), 0, shape, box, walls)
-    gained = load(space, body.particles.x, flow, place(body.surface, space, body), met, nodes[4], nodes[5], dt, 1.0, work)
+    gained = load(space, body.particles.x, flow, pieces, met, nodes[4], nodes[5], dt, 1.0, work)
+    expose(body.surface, space, body.particles.x, pieces, nodes[4], dt, part, work)
     fold(nodes[5].reshape(-1, 1), 0, shape, box, walls)
     return gained
 
@@ -185,7 +186,8 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
     gained, passed, iterations, gamma = 0.0, np.zeros(len(links.rate)), 0, 1.0 if order == 1 else GAMMA
     for k in range(order):
         last, step = k == order - 1, gamma * dt
-        made = [stage_matrix(space, bodies[b], nodes[b], walls[b], *one[b], 1.0 if last else gamma, k == 0, step) for b in which]
+        gone = 1.0 if last else gamma
+        made = [stage_matrix(space, bodies[b], nodes[b], walls[b], *one[b], gone, k == 0, step) for b in which]
         rows, r = np.concatenate([m[0] for m in made]), np.concatenate([m[3] for m in made])
         columns = np.concatenate([np.where(m[1] >= 0, m[1] + first, -1) for m, first in zip(made, ends, strict=False)])
         whole = rows.copy()
@@ -202,8 +204,8 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
                 clean(space, nodes[b], one[b][0])
             return 0.0, passed, -1
         iterations += count
-        part = dt * (gamma if last else 1.0 - gamma)
-        heat = part * links.rate * drops(at, links.t, base + change)
+        share = dt * (gamma if last else 1.0 - gamma)
+        heat = share * links.rate * drops(at, links.t, base + change)
         passed += heat
         moved = np.zeros(len(r))
         push(at, links.t, -heat, moved)
@@ -211,7 +213,7 @@ def conduct_together(space, bodies, which, nodes, walls, links, dt: float, order
             each = one[b][2]
             mine = slice(first, first + len(each))
             nodes[b, 4, each] = base[mine] + change[mine]
-            gained += stage_loads(space, bodies[b], nodes[b], walls[b], one[b][0], one[b][1], m[4], part)
+            gained += stage_loads(space, bodies[b], nodes[b], walls[b], one[b][0], one[b][1], m[4], share, gone)
             nodes[b, 5, each] += moved[mine]
             settle(space, nodes[b], one[b][0])
     for b in which:

@@ -15,9 +15,9 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.contact.find import find_all
-from mpm.contact.found import BODY
-from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.step import Touching
+from mpm.contact.found import BODY, FACING
+from mpm.contact.skin import POINT, lay_skins, new_skin
+from mpm.contact.step import TOUCH, Touching
 from mpm.contact.tools import Tools, place_tools
 from mpm.implicit.matrix import add
 from mpm.implicit.trial import sign
@@ -40,6 +40,7 @@ class Pushed(NamedTuple):
     gap: np.ndarray  # (P,) at the start [m]
     stiff: np.ndarray  # (P,) k S [N/m]
     area: np.ndarray  # (P,) S
+    faces: np.ndarray  # (P,) whether the piece is a face that looks at the obstacle: heat passes through it where it touches
     mu: np.ndarray  # (P,) friction
     limit: np.ndarray  # (P,) F [N]
     stretch: np.ndarray  # (P, D) s^n [m]
@@ -48,7 +49,7 @@ class Pushed(NamedTuple):
 def nothing(D: int) -> Pushed:
     """No pairs."""
     none, whole, ways = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, D))
-    return Pushed(whole, whole, ways, whole, ways, ways, ways.copy(), whole, none, none, none, none, none, ways)
+    return Pushed(whole, whole, ways, whole, ways, ways, ways.copy(), whole, none, none, none, none > 0, none, none, ways)
 
 
 def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
@@ -64,7 +65,9 @@ def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
     lay_skins(scene.space, scene.bodies, skin, skin.every, skin.first)
     found, count = find_all(scene.space, scene.for_motion, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR, touching.number[:0])
     piece = found.piece[:count]
-    s = np.flatnonzero((piece >= 0) & (np.sum(found.normal[:count] * skin.normal[piece], axis=1) < 0.5))
+    cosine = np.sum(found.normal[:count] * skin.normal[piece], axis=1)
+    s = np.flatnonzero((piece >= 0) & (cosine < 0.5))
+    faces = (cosine[s] < FACING) & (skin.area[piece[s]] > 2 * POINT * scene.space.h ** (D - 1))
     piece, normal, against, mu, gap = (column[s] for column in (found.piece, found.normal, found.against, found.mu, found.gap))
     stiff, stretch = stiffness * skin.area[piece], touching.warm[piece, touching.rows[against]]
     stretch = stretch - np.sum(stretch * normal, axis=1)[:, None] * normal
@@ -72,7 +75,7 @@ def may_touch(scene, clock, dt: float, stiffness: float) -> Pushed:
     limit = np.where(fast, np.where(gap < TOUCHES * scene.space.h, np.inf, 0.0), np.where(fast, 0.0, mu) * stiff * np.maximum(-gap, 0.0))
     told = dt * found.given[s]
     return Pushed(piece, skin.owner[piece], skin.x[piece] - skin.home[piece], against, normal, told, told.copy(), found.free[s], gap, stiff,
-                  skin.area[piece], mu, limit, stretch)  # fmt: skip
+                  skin.area[piece], faces, mu, limit, stretch)  # fmt: skip
 
 
 @kernel(inline=True)
@@ -142,18 +145,18 @@ def push_back(nodes, pushed, u, r, matrix, want, depth):
 
 
 @kernel
-def let_slide(nodes, pushed, u, force, slip):
-    """What a step leaves: force (P, D) of obstacles on pieces [N], slip (P, D) of springs [m], and s^{n+1} in pushed.stretch."""
+def let_slide(nodes, pushed, u, gap, force, slip):
+    """What a step leaves: gap (P,) [m], force (P, D) of obstacles on pieces [N], slip (P, D) of springs [m], and s^{n+1} in pushed.stretch."""
     D = u.shape[1]
     weight, move, way = np.empty(nodes.w.shape[1]), np.empty(D), np.empty(D)
     for s in range(pushed.owner.shape[0]):
         place(nodes, pushed, s, u, weight, move)
-        gap, size = pressed(pushed, s, move, way)
+        gap[s], size = pressed(pushed, s, move, way)
         full, limit = pushed.stiff[s], pushed.limit[s]
-        held = 0.0 if gap >= 0.0 or limit == 0.0 else limit / (full * size) if full * size > limit else 1.0
+        held = 0.0 if gap[s] >= 0.0 or limit == 0.0 else limit / (full * size) if full * size > limit else 1.0
         for c in range(D):
             slip[s, c] = (1.0 - held) * way[c]
-            force[s, c] = full * (max(-gap, 0.0) * pushed.normal[s, c] - held * way[c])
+            force[s, c] = full * (max(-gap[s], 0.0) * pushed.normal[s, c] - held * way[c])
             pushed.stretch[s, c] = held * way[c]
 
 
@@ -163,14 +166,14 @@ def keep_books(scene, nodes, pushed: Pushed, u: np.ndarray, depth: np.ndarray, d
     if met is None:
         return 0.0
     touching: Touching = met.touching
-    force, slip = np.zeros(pushed.arm.shape), np.zeros(pushed.arm.shape)
-    let_slide(nodes, pushed, u, force, slip)
-    rows, deep = touching.rows[pushed.against], depth > 0
+    gap, force, slip = np.zeros(len(pushed.gap)), np.zeros(pushed.arm.shape), np.zeros(pushed.arm.shape)
+    let_slide(nodes, pushed, u, gap, force, slip)
+    rows, touches = touching.rows[pushed.against], pushed.faces & (gap <= TOUCH * scene.space.h)
     touching.warm[:] = 0.0
     touching.warm[pushed.piece, rows] = pushed.stretch
-    np.add.at(touching.touched, (pushed.piece[deep], rows[deep]), dt)
+    np.add.at(touching.touched, (pushed.piece[touches], rows[touches]), dt)
     np.add.at(touching.pushed[0], pushed.against, dt * force)
-    np.add.at(touching.spread[0], pushed.against[deep], dt * pushed.area[deep])
+    np.add.at(touching.spread[0], pushed.against[touches], dt * pushed.area[touches])
     B = len(touching.first) - 1
     x = scene.bodies[0].particles.x[pushed.owner] + pushed.arm
     if isinstance(touching.tools, Tools):

@@ -17,7 +17,7 @@ from mpm.state import Setting, Softening
 
 CARRIED = ("x", "v", "C", "B", "J", "c", "F", "X", "k", "most")
 ON_NODES = ("u", "v", "plastic", "T")  # in the total frame
-SUMS = ("exchanged", "local", "dissipated", "repaired", "unrepaired", "worked", "swelled", "softened")
+SUMS = ("exchanged", "given", "local", "dissipated", "repaired", "unrepaired", "worked", "swelled", "softened")
 BOOKS = ("pushed", "turned", "spread", "worked", "rubbed")  # of what walls and tools do (mpm.contact.step.Touching)
 STILL = 1e-3  # K: a span of temperatures below which nothing is warmer than anything
 WARMER = 0.1  # weight of the error of temperature, over the span of temperatures so far, beside that of shape over the body's size

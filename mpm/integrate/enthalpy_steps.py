@@ -18,11 +18,11 @@ from mpm.boundary import directions
 from mpm.boundary.walls import fold
 from mpm.heat.exchange import meet
 from mpm.integrate.enthalpy_nodes import closed, contents, guess, opened, settle, show, spread, wiped
-from mpm.integrate.heat_chebyshev import recurrence, stabilised_by_law
+from mpm.integrate.heat_chebyshev import recurrence, stabilised_by_law, stage_weights
 from mpm.integrate.heat_implicit import GAMMA, conductances, implicit_by_law, load, wipe
 from mpm.integrate.heat_matrix import Rows, conjugate_gradients, matrix
 from mpm.integrate.heat_step import conduct, explicit_by_law
-from mpm.integrate.surface_flux import exchange, place, temperature_at
+from mpm.integrate.surface_flux import exchange, expose, place, temperature_at
 from mpm.jit import kernel
 from mpm.materials import LAWS
 from mpm.materials.laws import Constant
@@ -125,7 +125,9 @@ def implicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, ord
         count = newton(space, x, alpha, flux, on, taken, total, gamma * dt, tolerance, scratch)
         ok = count >= 0
         iterations += count
-        gained += load(space, x, flow, pieces, met, stage, rate, dt * (gamma if last else 1.0 - gamma), 1.0, work)
+        share = gamma if last else 1.0 - gamma
+        gained += load(space, x, flow, pieces, met, stage, rate, share * dt, 1.0, work)
+        expose(body.surface, space, x, pieces, stage, share * dt, 1.0 if last else gamma, work)
         collect(rate, on, total)
     ok = ok and closed(space, body, thermal, on, total, taken, stage, back.affine, work)
     wiped(on, nodes)
@@ -150,7 +152,7 @@ def look_up(alpha, on, heat, taken, stage):
 
 
 def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, substeps, back):
-    capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
+    x, capacity, theta, stage, rate = body.particles.x, nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
     on = opened(space, body, thermal, capacity, theta, stage, walls, back.blend, work)
     heat, taken = np.zeros(len(on.each)), guess(on)
@@ -159,6 +161,7 @@ def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, sub
         look_up(alpha, on, heat, taken, stage)
         conduct(space, body, thermal, stage, rate, dt / substeps, work)
         gained += exchange(body, space, pieces, thermal, stage, rate, dt / substeps, (k + 0.5) / substeps, work)
+        expose(body.surface, space, x, pieces, stage, dt / substeps, (k + 0.5) / substeps, work)
         collect(rate, on, heat)
     if not closed(space, body, thermal, on, heat, taken, stage, back.affine, work):
         thermal.theta[:] = np.nan
@@ -167,32 +170,34 @@ def explicit_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, sub
 
 
 def stabilised_through_enthalpy(alpha, thermal, space, body, nodes, walls, dt, count, back):
-    capacity, theta, stage, rate = nodes[0], nodes[1], nodes[2], nodes[3]
+    x, capacity, theta, stage, rate = body.particles.x, nodes[0], nodes[1], nodes[2], nodes[3]
     work = np.zeros((2 + 3 * directions(space), CHUNK))
     on = opened(space, body, thermal, capacity, theta, stage, walls, back.blend, work)
     K = len(on.each)
     taken, first = guess(on), np.zeros(K)
     pieces = place(body.surface, space, body)
-    conduct(space, body, thermal, theta, rate, dt, work)
-    q0 = exchange(body, space, pieces, thermal, theta, rate, dt, 0.0, work)
-    collect(rate, on, first)
     terms = recurrence(count)
+    weights = stage_weights(terms)
+    conduct(space, body, thermal, theta, rate, dt, work)
+    gained = weights[0] * exchange(body, space, pieces, thermal, theta, rate, dt, 0.0, work)
+    expose(body.surface, space, x, pieces, theta, weights[0] * dt, 0.0, work)
+    collect(rate, on, first)
     before, last = np.zeros(K), terms[0, 0] * first
-    q_before, q_last, t_before, t_last = 0.0, terms[0, 0] * q0, 0.0, terms[0, 0]
+    t_before, t_last = 0.0, terms[0, 0]
     for k in range(1, count):
         mu, nu, step, lag = terms[k, 0], terms[k, 1], terms[k, 2], terms[k, 3]
         look_up(alpha, on, last, taken, stage)
         conduct(space, body, thermal, stage, rate, dt, work)
-        gain = exchange(body, space, pieces, thermal, stage, rate, dt, t_last, work)
+        gained += weights[k] * exchange(body, space, pieces, thermal, stage, rate, dt, t_last, work)
+        expose(body.surface, space, x, pieces, stage, weights[k] * dt, t_last, work)
         flown = np.zeros(K)
         collect(rate, on, flown)
         before, last = last, mu * last + nu * before + step * flown - lag * first
-        q_before, q_last = q_last, mu * q_last + nu * q_before + step * gain - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
     if not closed(space, body, thermal, on, last, taken, stage, back.affine, work):
         thermal.theta[:] = np.nan
     wiped(on, nodes)
-    return q_last
+    return gained
 
 
 for law in LAWS:

@@ -18,7 +18,7 @@ from mpm.heat.exchange import meet
 from mpm.heat.lanes import specify
 from mpm.integrate.heat_matrix import Rows, conjugate_gradients, matrix
 from mpm.integrate.heat_step import gather_heat, over_nodes, reach, scatter_heat
-from mpm.integrate.surface_flux import load_piece, place, temperature_at
+from mpm.integrate.surface_flux import expose, load_piece, place, temperature_at
 from mpm.jit import kernel, role
 from mpm.materials.laws import Constant
 from mpm.state import PAD, Isothermal, Thermal
@@ -89,6 +89,7 @@ def implicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, orde
         weight = dt * (gamma if k == stages - 1 else 1.0 - gamma)
         unfold(stage.reshape(-1, 1), 0, shape, box, walls)
         gained += load(space, x, flow, pieces, met, stage, rate, weight, 1.0, work)
+        expose(body.surface, space, x, pieces, stage, weight, part, work)
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
         take(total, rate, shape, box)
     ok = count >= 0

@@ -18,7 +18,7 @@ from mpm.basis import stencil
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, empty, fold, unfold
 from mpm.heat.lanes import specify, warm_up
-from mpm.integrate.surface_flux import exchange, place
+from mpm.integrate.surface_flux import exchange, expose, place
 from mpm.jit import kernel, role
 from mpm.materials.laws import Constant
 from mpm.state import Isothermal, Thermal
@@ -81,6 +81,7 @@ def explicit_by_law_constant(alpha, thermal, space, body, nodes, walls, dt, subs
     for k in range(substeps):
         conduct(space, body, thermal, theta, rate, dt / substeps, work)
         gained += exchange(body, space, pieces, thermal, theta, rate, dt / substeps, (k + 0.5) / substeps, work)
+        expose(body.surface, space, x, pieces, theta, dt / substeps, (k + 0.5) / substeps, work)
         fold(rate.reshape(-1, 1), 0, shape, box, walls)
         over_nodes(rate, capacity, theta, shape, box, False)
         unfold(theta.reshape(-1, 1), 0, shape, box, walls)

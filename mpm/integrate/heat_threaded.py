@@ -12,13 +12,13 @@ import numpy as np
 
 from mpm.boundary import directions, extents
 from mpm.boundary.walls import clear, fold, unfold
-from mpm.integrate.heat_chebyshev import ROWS, combine, recurrence
+from mpm.integrate.heat_chebyshev import ROWS, combine, recurrence, stage_weights
 from mpm.integrate.heat_step import conduct, gather_heat, over_nodes, reach, scatter_heat
 from mpm.integrate.step_threaded import Crew, wave
-from mpm.integrate.surface_flux import exchange, place
+from mpm.integrate.surface_flux import exchange, expose, place
 from mpm.jit import kernel
 from mpm.materials.laws import Constant
-from mpm.state import Particles, Radiation, Surface, Thermal
+from mpm.state import Exposure, Particles, Radiation, Surface, Thermal
 from mpm.transfer import CHUNK
 
 
@@ -32,13 +32,19 @@ def part_of(body, begin: int, end: int):
     """The particles from `begin` to `end` of a body and their pieces, as a body: views, but for what of the surface a heat step only reads."""
     particles, thermal, surface = Particles(*(array[begin:end] for array in body.particles)), body.thermal, body.surface
     if isinstance(surface, Surface):
-        here = np.flatnonzero((begin <= surface.owner) & (surface.owner < end))
+        here = pieces_between(surface, begin, end)
         row, owner, radiation = surface.row[begin:end], surface.owner[here] - begin, surface.radiation
         if isinstance(radiation, Radiation):
             radiation = Radiation(*(array[here] for array in radiation))
         read = (getattr(surface, name)[here] for name in ("area", "offset", "beta", "outside", "drift", "flux"))
-        surface = Surface(surface.F, row, owner, *read, radiation)
+        exposure = Exposure(*(np.zeros(len(here)) for _ in surface.exposure)) if isinstance(surface.exposure, Exposure) else surface.exposure
+        surface = Surface(surface.F, row, owner, *read, radiation, exposure)
     return body._replace(particles=particles, thermal=thermal._replace(theta=thermal.theta[begin:end], c=thermal.c[begin:end]), surface=surface)
+
+
+def pieces_between(surface, begin: int, end: int) -> np.ndarray:
+    """Numbers of the pieces of the particles from `begin` to `end`."""
+    return np.flatnonzero((begin <= surface.owner) & (surface.owner < end))
 
 
 class Parts:
@@ -46,7 +52,8 @@ class Parts:
 
     def __init__(self, space, body, starts, axis: int, nodes, crew: Crew):
         self.space, self.crew, self.order = space, crew, wave(len(starts) - 1)
-        self.parts = [part_of(body, int(begin), int(end)) for begin, end in pairwise(starts)]
+        self.spans = [(int(begin), int(end)) for begin, end in pairwise(starts)]
+        self.parts = [part_of(body, *span) for span in self.spans]
         self.work = [np.zeros((2 + 3 * directions(space), CHUNK)) for _ in self.parts]
         self.boxes, self.places, self.apart = np.zeros((len(self.parts), 3, 2), np.int64), [None] * len(self.parts), True
         self.each(self.look)
@@ -80,17 +87,24 @@ class Parts:
 
         self.each(one)
 
-    def flow(self, theta, rate, dt: float, part: float) -> float:
-        """Conduction and exchange in dt on to `rate`; the heat gained [J]."""
+    def flow(self, theta, rate, dt: float, part: float, weight: float) -> float:
+        """Conduction and exchange in dt on to `rate`; the heat gained [J]. The step ends with `weight` of it."""
         gained = [0.0] * len(self.parts)
 
         def one(s: int) -> None:
             body = self.parts[s]
             conduct(self.space, body, body.thermal, theta, rate, dt, self.work[s])
-            gained[s] = exchange(body, self.space, self.places[s], body.thermal, theta, rate, dt, part, self.work[s])
+            gained[s] = exchange_and_expose(self.space, body, self.places[s], theta, rate, dt, part, weight, self.work[s])
 
         self.each(one)
-        return sum(gained)
+        return weight * sum(gained)
+
+    def tell(self, surface) -> None:
+        """What the parts' pieces saw, to the body's."""
+        if isinstance(surface, Surface) and isinstance(surface.exposure, Exposure):
+            for span, part in zip(self.spans, self.parts, strict=True):
+                for whole, mine in zip(surface.exposure, part.surface.exposure, strict=True):
+                    whole[pieces_between(surface, *span)] += mine
 
     def gather(self, start, end, back) -> None:
         """Particle temperatures from the nodes before and after."""
@@ -99,6 +113,14 @@ class Parts:
             gather_heat(self.space, self.parts[s].particles.x, self.parts[s].thermal, start, end, back, self.work[s])
 
         self.each(one)
+
+
+@kernel
+def exchange_and_expose(space, body, pieces, theta, rate, dt, part, weight, work):
+    """exchange, and what the pieces of a part see of it, of which the step ends with `weight`."""
+    gained = exchange(body, space, pieces, body.thermal, theta, rate, dt, part, work)
+    expose(body.surface, space, body.particles.x, pieces, theta, weight * dt, part, work)
+    return gained
 
 
 @kernel
@@ -150,6 +172,7 @@ def heat_in_slabs(scene, b: int, nodes, walls, dt: float, count: int, back) -> f
         parts = Parts(scene.space, scene.for_heat[b], order.starts[b], order.axis, nodes, crew)
         gained = step(parts, nodes, extents(scene.space), walls, dt, count, back)
         clear_nodes(nodes[:ROWS], extents(scene.space), parts.box)
+        parts.tell(scene.for_heat[b].surface)
     return gained
 
 
@@ -160,7 +183,7 @@ def explicit(parts: Parts, nodes, shape, walls, dt: float, substeps: int, back) 
     open_nodes((capacity, start, theta), shape, parts.box, walls)
     gained = 0.0
     for k in range(substeps):
-        gained += parts.flow(theta, rate, dt / substeps, (k + 0.5) / substeps)
+        gained += parts.flow(theta, rate, dt / substeps, (k + 0.5) / substeps, 1.0)
         add_rate((capacity, theta, rate), shape, parts.box, walls)
     parts.gather(start, theta, back)
     return gained
@@ -171,17 +194,17 @@ def stabilised(parts: Parts, nodes, shape, walls, dt: float, count: int, back) -
     capacity, start, rate, first, before, last, theta = nodes[:ROWS]
     parts.scatter(capacity, theta)
     open_nodes((capacity, start, theta), shape, parts.box, walls)
-    q0, terms = parts.flow(start, rate, dt, 0.0), recurrence(count)
-    mu = float(terms[0, 0])
+    terms = recurrence(count)
+    weights, mu = stage_weights(terms).tolist(), float(terms[0, 0])
+    gained = parts.flow(start, rate, dt, 0.0, weights[0])
     next_stage((capacity, rate, first, start, start, start, last), shape, parts.box, walls, (0.0, 0.0, 1.0, 0.0, mu), True)
-    q_before, q_last, t_before, t_last = 0.0, mu * q0, 0.0, mu
+    t_before, t_last = 0.0, mu
     for k in range(1, count):
         mu, nu, step, lag = terms[k].tolist()
-        taken = parts.flow(last, rate, dt, t_last)
+        gained += parts.flow(last, rate, dt, t_last, weights[k])
         made = (capacity, rate, first, last, start if k == 1 else before, start, theta)
         next_stage(made, shape, parts.box, walls, (mu, nu, 1.0 - mu - nu, step, -lag), False)
         before, last, theta = last, theta, before
-        q_before, q_last = q_last, mu * q_last + nu * q_before + step * taken - lag * q0
         t_before, t_last = t_last, mu * t_last + nu * t_before + step - lag
     parts.gather(start, last, back)
-    return q_last
+    return gained

@@ -1,6 +1,8 @@
 """Surface pieces during a heat step: where they are now, and what they load on to the nodes (docs/physics.md 11, linear-exact).
 
 load_i = dt S [q - beta (theta_s - outside)] w~_i,   theta_s = sum_j w~_j theta_j,   w~ = w + grad(w) (x_s - x_p)
+
+Every wall and tool has its own beta and outside, but all share theta_s: with its integral over a heat step (`expose`) the heat of each is known.
 """
 
 import numpy as np
@@ -9,7 +11,7 @@ from mpm.boundary import directions
 from mpm.heat.exchange import meet
 from mpm.heat.surface import area_and_offset
 from mpm.jit import kernel, role
-from mpm.state import NoExchange, Surface
+from mpm.state import Exposure, NoExchange, NoExposure, Surface
 from mpm.transfer import gather_scalar, scatter_scalar
 
 
@@ -71,3 +73,40 @@ def exchange(body, space, pieces, thermal, theta, rate, dt, part, work):
         load_piece(space, x, owner, offset, s, load, rate, work)
         gained += load
     return gained
+
+
+@role
+def expose(surface, space, x, pieces, theta, time, part, work):
+    """Integrals over `time` of a stage at nodal temperatures `theta`, `part` of the heat step gone, on to the surface's Exposure."""
+    raise TypeError(f"no exposure of {type(surface).__name__}")
+
+
+@expose.register(NoExchange)
+def expose_no_exchange(surface, space, x, pieces, theta, time, part, work):
+    return 0.0
+
+
+@expose.register(Surface)
+def expose_surface(surface, space, x, pieces, theta, time, part, work):
+    return expose_pieces(surface.exposure, space, x, pieces, theta, time, part, work)
+
+
+@role
+def expose_pieces(exposure, space, x, pieces, theta, time, part, work):
+    """See expose."""
+    raise TypeError(f"no exposure in {type(exposure).__name__}")
+
+
+@expose_pieces.register(NoExposure)
+def expose_pieces_no_exposure(exposure, space, x, pieces, theta, time, part, work):
+    return 0.0
+
+
+@expose_pieces.register(Exposure)
+def expose_pieces_exposure(exposure, space, x, pieces, theta, time, part, work):
+    owner, area, offset = pieces
+    for s in range(owner.shape[0]):
+        exposure.area[s] += time * area[s]
+        exposure.theta[s] += time * area[s] * temperature_at(space, x, owner, offset, s, theta, work)
+        exposure.part[s] += time * area[s] * part
+    return 0.0

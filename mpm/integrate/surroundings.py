@@ -17,7 +17,7 @@ import numpy as np
 
 from mpm.boundary import CONTACT, extents
 from mpm.heat.programmes import at, changes, during, turns
-from mpm.state import PAD, Radiation
+from mpm.state import PAD, Exposure, Radiation
 
 REACH, FACING = 0.5, 0.5  # cells; cosine
 NEAR = 4.0  # cells from a particle to its pieces, at most
@@ -51,6 +51,7 @@ class HotWall:
     temperature: Any
     touched: Any = None  # (S,) time in touch since the last heat step [s]; None: a mirror
     tool: str = ""  # its name; nothing of a wall
+    number: int = 0  # among all hot walls and tools of the scene (mpm.simulation.Scene.hot)
 
 
 @dataclass
@@ -63,6 +64,8 @@ class Surroundings:
     most: float  # PENALTY kappa/h: caps every beta [W/(m2 K)]
     written: bool = field(default=False, init=False)
     hidden: bool = field(default=False, init=False)  # whether something was covered when it was written
+    betas: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), init=False)  # (walls, S) of each wall on each piece in the heat step [W/(m2 K)]
+    ends: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)), init=False)  # (walls, 2) temperatures at its ends, less zero [K]
 
     @property
     def steady(self) -> bool:
@@ -108,8 +111,21 @@ class Surroundings:
             free = 1.0 - covered[: len(surface.beta)]  # what flows in has pieces that are not there yet
             for array in (surface.beta, surface.flux, *(() if radiation is None else (radiation.emissivity,))):
                 array *= free
-        for wall in self.walls:
-            self.touch(wall, space, body, start, dt)
+        self.betas, self.ends = np.zeros((len(self.walls), len(surface.beta))), np.zeros((len(self.walls), 2))
+        for number, wall in enumerate(self.walls):
+            self.touch(number, wall, space, body, start, dt)
+        if isinstance(surface.exposure, Exposure):
+            for array in surface.exposure:
+                array[:] = 0.0
+
+    def given(self, surface, count: int) -> np.ndarray:
+        """Heat that each of the scene's `count` hot walls and tools gave in the heat step that is over (count,) [J]."""
+        heat = np.zeros(count)
+        if self.walls:
+            area, theta, part = surface.exposure
+            each = self.betas * (np.outer(self.ends[:, 0], area) + np.outer(self.ends[:, 1] - self.ends[:, 0], part) - theta)
+            heat[[wall.number for wall in self.walls]] = each.sum(axis=1)
+        return heat
 
     def cap(self, beta: float) -> float:
         """beta, at most the penalty: what is finite and below it acts as it is given."""
@@ -135,10 +151,10 @@ class Surroundings:
                     found[axis, side] = CONTACT
         return found
 
-    def touch(self, wall: HotWall, space, body, start: float, dt: float) -> None:
+    def touch(self, number: int, wall: HotWall, space, body, start: float, dt: float) -> None:
         """The pieces at a hot wall exchange with it alone."""
         if wall.touched is not None:
-            self.share(wall, body.surface, start, dt)
+            self.share(number, wall, body.surface, start, dt)
             return
         surface, here = body.surface, facing(space, body, wall.axis, wall.side, REACH)
         first, last, beta = self.met(wall, start, dt)
@@ -147,8 +163,9 @@ class Surroundings:
         surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = beta, first, last - first, 0.0
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[here] = 0.0
+        self.betas[:, here], self.betas[number, here], self.ends[number] = 0.0, beta, (first, last)
 
-    def share(self, wall: HotWall, surface, start: float, dt: float) -> None:
+    def share(self, number: int, wall: HotWall, surface, start: float, dt: float) -> None:
         """The pieces that touched a wall for a part of the heat step exchange with it for that part, and with the rest for what is left."""
         s = np.flatnonzero(wall.touched > 0.0)
         if len(s) == 0 or dt == 0.0:
@@ -166,6 +183,8 @@ class Surroundings:
         surface.flux[s] *= free
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[s] *= free
+        self.betas[:, s] *= free
+        self.betas[number, s], self.ends[number] = beta, (first, last)
 
 
 def jumps(surroundings, end: float, more: tuple = ()) -> np.ndarray:

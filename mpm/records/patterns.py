@@ -26,9 +26,10 @@ SINGLE = ("temperature", "heat_total", "mass", "volume", "momentum", "position",
 
 def meets(what: str, of: str, bodies: Iterable[str] = ()) -> tuple[str, str]:
     """Who is acted on and by whom, in words: `patty` and `cheese` of the pair patty_cheese, `bodies` and `press` of a tool. Where a name of the scene's
-    bodies ends is known from `bodies` alone; heat passes between pairs only."""
-    one, _, two = next(((one, "_", two) for one, two in permutations(bodies, 2) if of == f"{one}_{two}"), of.partition("_") if what == "heat" else ("", "", ""))
+    bodies ends, and whether the heat of `hot_pan` is that of a pair, is known from `bodies` alone."""
+    guess = of.partition("_") if what == "heat" and not bodies else ("", "", "")
+    one, _, two = next(((one, "_", two) for one, two in permutations(bodies, 2) if of == f"{one}_{two}"), guess)
     if two and (bodies or "_" not in two):
         return one.replace("_", " "), two.replace("_", " ")
     named = of.replace("_", " ")
-    return (f"the first body of {named}", "the second") if what == "heat" else ("bodies", named)
+    return (f"the first body of {named}", "the second") if what == "heat" and two else ("bodies", named)

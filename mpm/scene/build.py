@@ -17,7 +17,7 @@ from mpm.observe import Watch
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.course import course
-from mpm.scene.exchange import pieces_of, refuse_absent
+from mpm.scene.exchange import heated, pieces_of, refuse_absent
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit, kinks
 from mpm.scene.inflow import by_owner, inflow, nozzle, sample_column, warmth
@@ -215,6 +215,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
         names=names,
         bodies=bodies,
         surroundings=surroundings,
+        hot=heated(experiment),
         seams=seams,
         references=references,
         outlines=outlines,

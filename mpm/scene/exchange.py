@@ -11,7 +11,7 @@ from mpm.materials import table, value
 from mpm.scene.menus import acting, known
 from mpm.scene.refusal import SceneError
 from mpm.scene.shapes import cut_quadrature, shape
-from mpm.state import NoExchange, NoRadiation, Radiation, Surface
+from mpm.state import Exposure, NoExchange, NoExposure, NoRadiation, Radiation, Surface
 
 COARSE, NOTHING = 4, 1e-9  # cells along each extent in which a side is looked for; of the surface
 ON = 0.05  # cells from the face of a body to which another is welded
@@ -64,17 +64,22 @@ def acts_of(entry, pieces) -> list[Act]:
     return acts + [Act(pieces, emissivity=emissivity, sky=sky) for emissivity, sky in rates(entry, "grey") if most(emissivity) > 0]
 
 
+def heated(experiment) -> tuple[str, ...]:
+    """Names of the walls and tools that have `heat`."""
+    return tuple(name for things in (experiment.walls, experiment.tools) for name, one in things.items() if getattr(one, "heat", None) is not None)
+
+
 def hot_walls(experiment, sides) -> list[HotWall]:
     """Walls and tools that have `heat`; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
-    found = []
+    found, names = [], heated(experiment)
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
         if heat is not None and most(programme(heat.beta)) > 0:
             wall = experiment.walls[side]
             beta = spell(programme(heat.beta), getattr(wall, "from"), wall.until)
-            found.append(HotWall(number // 2, number % 2, beta, programme(heat.temperature)))
+            found.append(HotWall(number // 2, number % 2, beta, programme(heat.temperature), number=names.index(side)))
     hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and most(programme(tool.heat.beta)) > 0]
-    return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name) for name, heat in hot]
+    return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name, number=names.index(name)) for name, heat in hot]
 
 
 def twice(pieces: list[np.ndarray]) -> bool:
@@ -142,7 +147,8 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
     penalty = firm * max(value(thermal.kappa, t) for t in seen) / experiment.grid.cell
     must_conduct(name, penalty > 0, any(most(act.beta) > 0 for act in (*acts, *walls)) or bool(radiating))
     radiation = Radiation(np.zeros(len(kept)), np.ones(len(kept)), np.zeros(len(kept))) if radiating else NoRadiation()
-    return pieces_of(cut, kept, thermal.theta.dtype, radiation), Surroundings(acts, walls, zero, penalty), kept
+    exposure = Exposure(*np.zeros((3, len(kept)))) if walls else NoExposure()
+    return pieces_of(cut, kept, thermal.theta.dtype, radiation)._replace(exposure=exposure), Surroundings(acts, walls, zero, penalty), kept
 
 
 def pieces_of(cut, kept: np.ndarray, dtype, radiation) -> Surface:
