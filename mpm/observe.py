@@ -29,9 +29,9 @@ from mpm.fields import axis_names, cauchy, grid_fields, motion_of, particle_fiel
 from mpm.follow import moved, nearest, renumbered, sampled
 from mpm.heat.setting import conditions
 from mpm.memory import Frames, rows
-from mpm.outcome import Outcome
+from mpm.outcome import Outcome, Run
 from mpm.records.variables import parts
-from mpm.state import PAD, Axisymmetric, Run, Setting, Thermal
+from mpm.state import PAD, Axisymmetric, Setting, Thermal
 from mpm.total import reference as moving
 from mpm.total.heat import Warmth
 from mpm.transfer import Apic
@@ -215,8 +215,7 @@ class Recorder:
         yield "heat_total", total
         yield from self.setting()
         yield "area_exchanging", self.exchanging()
-        yield "heat_exchanged", clock.exchanged
-        yield from ((f"heat_{name}", heat) for name, heat in zip(scene.hot, clock.given.tolist(), strict=True))
+        yield from (("heat_exchanged", clock.exchanged), *((f"heat_{name}", heat) for name, heat in zip(scene.hot, clock.given.tolist(), strict=True)))
         made = total - clock.exchanged - clock.local - getattr(scene.inflow, "heat", 0.0)
         yield from (("heat_ledger", made), ("energy_ledger", made - self.gone))
         for name in self.places:

@@ -1,9 +1,12 @@
-"""How a run can end. A failure is a value with advice, never an exception: a map of failures is an ordinary sweep.
+"""How a run can end, and what came out of it. A failure is a value with advice, never an exception: a map of failures is an ordinary sweep.
 
 Compiled loops report the integer; everything else reads `Outcome`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
 
 COMPLETED, NON_FINITE, INVERTED, OVERSTRETCHED, LEFT_GRID, RETURN_MAP, STEP_UNDERFLOW, ENERGY_GROWTH, MAX_PRINCIPLE, BUDGET, HEAT_SOLVER, FRACTURED = range(12)
 UNPREPARED, NO_EQUILIBRIUM, OUTGROWN = 12, 13, 14
@@ -63,3 +66,21 @@ def outcome(code: int, particle: int = -1, time: float | None = None, step: int 
     if step >= 0:
         text += f", step {step}"
     return Outcome(kind, text, advice)
+
+
+@dataclass
+class Run:
+    """The result of one point."""
+
+    outcome: Outcome
+    times: np.ndarray
+    series: dict[str, np.ndarray]
+    finals: dict[str, float]
+    axes: dict[str, np.ndarray] = field(default_factory=dict)
+    snapshot_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    grid: dict[str, np.ndarray] = field(default_factory=dict)
+    particles: list[dict[str, np.ndarray]] = field(default_factory=list)
+    frames: Any = None  # in the place of grid and particles where snapshots went to a file as they were made (mpm.records.frames)
+    steps: int = 0
+    wall_time: float = 0.0
+    facts: dict = field(default_factory=dict)

@@ -31,6 +31,7 @@ import numpy as np
 
 from mpm.guards import ROUNDED
 from mpm.materials import value
+from mpm.outcome import Run
 from mpm.records.variables import describe, turn
 from mpm.rigid.touching import TOUCH
 from mpm.scene.bearing import lying
@@ -40,7 +41,6 @@ from mpm.scene.law import elastic_law, law, stress_temperature_modulus
 from mpm.scene.rigid import matter
 from mpm.scene.scales import exchanging, scales
 from mpm.scene.shapes import cut_quadrature, shape
-from mpm.state import Run
 from mpm.warned import warning
 
 VOLUME, HEAT, ENERGY, THIN, SHORTER = 0.1, 0.01, 0.1, 2.0, 0.01

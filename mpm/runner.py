@@ -20,12 +20,12 @@ from mpm.costs import estimate, mechanics_settled, refuse_endless, settled
 from mpm.guards import MODERATE
 from mpm.integrate.sorting import SHARED
 from mpm.memory import Turn
+from mpm.outcome import Run
 from mpm.records.variables import is_total, turn
 from mpm.review import review
 from mpm.scene.framing import choice
 from mpm.scene.inventory import physics
 from mpm.scene.refusal import SceneError, placed
-from mpm.state import Run
 
 
 @placed

@@ -21,8 +21,8 @@ from mpm.integrate.strain import CODE, DISSIPATED, HEATED, PARTICLE, RATE, REPOR
 from mpm.integrate.surroundings import jumps
 from mpm.memory import arrays, fill
 from mpm.observe import Recorder, merged, stops
-from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, outcome
-from mpm.state import Run, as_heated, as_moved
+from mpm.outcome import BUDGET, COMPLETED, NON_FINITE, STEP_UNDERFLOW, UNSOUND, Outcome, Run, outcome
+from mpm.state import as_heated, as_moved
 from mpm.total.drive import advance_references, present_limits, present_steps, show_all
 from mpm.warming import warm_bodies
 

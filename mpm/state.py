@@ -4,12 +4,9 @@ Absence is an object: a body without heat carries `Isothermal()`, and nothing of
 Layouts   D directions of the grid, N particles, K strain components: line xx yy zz; plane xx yy zz xy; volume xx yy zz xy yz xz
 """
 
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from mpm.outcome import Outcome
 
 PAD = 2  # nodes outside each face of the domain: one that the basis reaches, one to notice a leaver
 
@@ -295,21 +292,3 @@ PER_PARTICLE = {  # arrays with a row a particle: they move together when partic
     Source: ("X", "t"),
     Load: ("force", "dipole", "F", "loaded", "t"),
 }
-
-
-@dataclass
-class Run:
-    """The result of one point."""
-
-    outcome: Outcome
-    times: np.ndarray
-    series: dict[str, np.ndarray]
-    finals: dict[str, float]
-    axes: dict[str, np.ndarray] = field(default_factory=dict)
-    snapshot_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    grid: dict[str, np.ndarray] = field(default_factory=dict)
-    particles: list[dict[str, np.ndarray]] = field(default_factory=list)
-    frames: Any = None  # in the place of grid and particles where snapshots went to a file as they were made (mpm.records.frames)
-    steps: int = 0
-    wall_time: float = 0.0
-    facts: dict = field(default_factory=dict)

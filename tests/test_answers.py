@@ -6,11 +6,10 @@ import re
 import pytest
 
 import mpm
-from mpm.outcome import Outcome
+from mpm.outcome import Outcome, Run
 from mpm.records.variables import FAILED, FIELDS_GRID, FIELDS_PARTICLES, OBSERVABLES, dataset_name
 from mpm.runner import complete, run_point
 from mpm.scene.refusal import SceneError
-from mpm.state import Run
 from mpm.sweep.worker import compute
 
 EVERYWHERE = {"temperature.mean", "temperature.max", "heat.total", "heat.exchanged", "heat.ledger"}

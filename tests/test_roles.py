@@ -169,6 +169,7 @@ ELSEWHERE = {
     "heat_locally(GridHeating)", "compress(GridHeating)",  # tests/integrate/test_grid_heating.py
     "divergence(Line)", "divergence(Plane)", "divergence(Axisymmetric)", "divergence(Volume)",  # the same
     "act(Given)", "act(Both)", "warm(Warming)", "warm(NoWarming)", "push_at(Force)", "push_at(NoForce)",  # tests/verification/test_sources.py
+    "expose(NoExchange)", "expose_pieces(Exposure)",  # tests/contact/test_heat_of_tools.py
     "hold(Held)",  # tests/contact/test_held.py
     "push_at(Jumping)", *(f"mix_past({force})" for force in ("Force", "NoForce", "Jumping")),  # tests/contact/test_course.py
     "act(Load)", "turn(Nominal)", "turn(Present)",  # tests/total/test_present_area.py

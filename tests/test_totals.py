@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import mpm
+from mpm.outcome import Run
 from mpm.records.variables import PER, TOTALS, VARIABLES, describe, is_total, turn
 from mpm.runner import whole
-from mpm.state import Run
 
 R, RHO, ALPHA, H = 4e-3, 900.0, 2000.0, 1e-3
 CENTRE = {3: [6e-3] * 3, "axisymmetric": [0.0, 6e-3]}

@@ -5,10 +5,10 @@ import time
 import numpy as np
 
 from mpm.memory import arrays, fill
-from mpm.outcome import BUDGET, COMPLETED, Outcome, outcome
+from mpm.outcome import BUDGET, COMPLETED, Outcome, Run, outcome
 from mpm.point.state import COLUMNS, LOCAL, NO_EQUILIBRIUM, WIDTH, Matter, Program, Progress, Rigid
 from mpm.point.time_loop import advance
-from mpm.state import Isothermal, Run, Setting
+from mpm.state import Isothermal, Setting
 
 ADVICE = "the prescribed stress may be past what the material bears (eta = 0 has a limit load), or lower `time.step`"
 MECHANICAL = COLUMNS[:14]

@@ -73,7 +73,7 @@ def known(name: str) -> None:
 
 
 def from_run(run_id: str, run: Any, **calls: Any) -> Record:
-    """The record of a Run (mpm.state.Run). Any outcome but `completed` keeps its series, and its finals become NaN."""
+    """The record of a Run (mpm.outcome.Run). Any outcome but `completed` keeps its series, and its finals become NaN."""
     outcome = run.outcome
     status = OK if outcome.ok else TIMEOUT if outcome.kind == "budget" else DIVERGED
     error = "" if status == OK else f"{STATUS[status]}: {outcome.message or outcome.kind.replace('_', ' ')}"

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mpm.outcome import Run
 from mpm.point import NOMINAL, STRESS, Lumped, Matter, Program, Sourced, solve
 from mpm.point.pick import kinds, stack
 from mpm.point.state import RATE, NoConduction, Rigid
@@ -14,7 +15,7 @@ from mpm.scene.law import expansion_law, law, mechanical_laws, setting_law
 from mpm.scene.menus import acting
 from mpm.scene.refusal import SceneError
 from mpm.scene.sources import heats
-from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Run, Thermal
+from mpm.state import Heating, Isothermal, NoExchange, NoExpansion, NoHeating, Thermal
 
 AXES = ("xx", "yy", "zz")
 PRESCRIBED = (("strain_rate", RATE), ("stretch_rate", NOMINAL), ("stress", STRESS))

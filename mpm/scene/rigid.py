@@ -7,13 +7,13 @@ import numpy as np
 from mpm.heat.programmes import Parts, bounds, changes
 from mpm.materials import value
 from mpm.observe import merged, near
+from mpm.outcome import Run
 from mpm.scene.build import SceneError, output_times, watch
 from mpm.scene.exchange import most, must_conduct, rates, refuse_absent, robin
 from mpm.scene.law import law
 from mpm.scene.shapes import cut_quadrature, shape
 from mpm.scene.sources import resting
 from mpm.scene.still import joints, refuse_covered
-from mpm.state import Run
 from mpm.warned import warning
 
 

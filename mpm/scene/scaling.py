@@ -12,9 +12,9 @@ kinetic   largest kinetic energy over the work done: kinetic, elastic and dissip
 import numpy as np
 
 from mpm.config import boundary
+from mpm.outcome import Run
 from mpm.records.variables import is_total, turn
 from mpm.scene.weight import strongest
-from mpm.state import Run
 from mpm.warned import warning
 
 FROUDE, KINETIC = 0.02, 0.05

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm.outcome import INVERTED, Outcome, outcome
-from mpm.state import Run
+from mpm.outcome import INVERTED, Outcome, Run, outcome
 from mpm.warned import warning
 
 NEEDS = ()  # no numba: these tests start many workers

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from mpm.outcome import Outcome
-from mpm.state import Run
+from mpm.outcome import Outcome, Run
 
 NEEDS = ()
 SHAPE = np.linspace(0.0, 1.0, 101)

@@ -86,8 +86,7 @@ def test_mp4(run, tmp_path):
 
 
 def test_tools_are_drawn_where_they_stand_and_leave(tmp_path, monkeypatch):
-    from mpm.outcome import Outcome
-    from mpm.state import Run
+    from mpm.outcome import Outcome, Run
 
     def run_point(experiment, beat=None, keeper=None):
         times, x = np.array([0.0, 0.5, 1.0]), np.array([[0.03, 0.01], [0.05, 0.02]], np.float32)

@@ -2,11 +2,10 @@ import numpy as np
 import pytest
 
 from mpm import fingerprint
-from mpm.outcome import INVERTED, Outcome, outcome
+from mpm.outcome import INVERTED, Outcome, Run, outcome
 from mpm.records import point
 from mpm.records.netcdf import write_whole
 from mpm.records.provenance import CANNOT_CHANGE_A_NUMBER, git_revision, source_hash, versions
-from mpm.state import Run
 
 
 def run(kind=None):

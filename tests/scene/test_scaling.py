@@ -80,9 +80,8 @@ def test_only_where_there_is_inertia(core):
 
 def test_energies_of_motion_leave_the_run_by_the_square_of_the_scale(core):
     """Velocities are S times too large on the fast clock, so kinetic energy is S^2 times: in the total as in its part."""
-    from mpm.outcome import COMPLETED, outcome
+    from mpm.outcome import COMPLETED, Run, outcome
     from mpm.scene.scaling import physical
-    from mpm.state import Run
 
     series = {"energy_kinetic": np.array([50.0, 75.0]), "energy_elastic": np.array([1.0, 2.0]), "dissipation_total": np.zeros(2)}
     series |= {"energy_total": series["energy_kinetic"] + series["energy_elastic"], "velocity_max": np.array([5.0, 5.0])}
