@@ -40,7 +40,7 @@ PATTERNS = (
     ("force.<wall or tool or pair>_<axis>", "force.bottom_z", "output.observables"),
     ("torque.<wall or tool or pair>_<axis>", "torque.roller_z", "output.observables"),
     ("area.<wall or tool or pair>", "area.press", "output.observables"),
-    ("heat.<wall or tool or pair>", "heat.pan", "output.observables; of a wall or tool that has heat: negative where it took heat"),
+    ("heat.<wall or tool or pair>", "heat.pan", "output.observables; from a hot wall or tool to the bodies, or from the second of a pair to the first"),
     ("measured_temperature_<curve>", "measured_temperature_centre", "output.measured; over measured_time_<curve>"),
     ("misfit_<curve>", "misfit_centre", "output.measured"),
 )
