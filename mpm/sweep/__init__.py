@@ -9,7 +9,7 @@ resources  memory and disk that points may take; `queue`: which are missing, and
 store      the folder of a sweep: points by id (`summaries` of them), what it holds (`manifest`), one writer
 collect    makes sweep.nc of it (`table`, `time_columns`, `time_axis`, `coordinates`; `shards` where it would be too large); `background_collect` does so
            while a sweep runs, beside it where that is much
-status, compare, plan_report   what is there; same or not; what would be done
+status, compare, plan_report   what is there; same or not; what would be done (`plan_points`: what its points have in common, and where they differ)
 
 The package itself can be called: `mpm.sweep(experiment, out=...)`, although `mpm.sweep.cases` and its siblings are modules.
 

@@ -58,6 +58,20 @@ def test_bodies_whose_particles_are_sorted(core, monkeypatch, shared):
 
 
 @pytest.mark.plain
+def test_a_body_between_a_hot_wall_and_a_hot_tool():
+    """What each has given goes on where it was."""
+    experiment = mpm.load({
+        "grid": {"dimension": 1, "size": [1.5], "cell": 0.125}, "time": {"end": 0.5}, "output": {"every": 0.05}, "gravity": [-0.01],
+        "bodies": {"bar": {"shape": {"box": {"lower": [0], "upper": [0.5]}}, "material": "m", "temperature": 300}},
+        "materials": {"m": {"density": 1, "elastic": {"hencky": {"E": 1, "nu": 0.3}}, "heat": {"fourier": {"kappa": 1, "alpha": 1}}}},
+        "walls": {"left": {"contact": {"heat": {"beta": 2, "temperature": 350}}}},
+        "tools": {"lid": {"shape": {"box": {"lower": [0.5], "upper": [0.9]}}, "motion": {"velocity": [0.2]}, "heat": {"beta": 5, "temperature": 400}}},
+    })  # fmt: skip
+    cuts, wrong = cut(experiment, 4, np.random.default_rng(7))
+    assert cuts == 4 and not wrong
+
+
+@pytest.mark.plain
 def test_a_run_that_goes_over_to_another_frame():
     """`method.frame: auto`: cut before and after."""
     experiment = mpm.load({
