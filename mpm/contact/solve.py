@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mpm.boundary import directions
-from mpm.contact.spots import WIDE, lanes_of
+from mpm.boundary import directions, extents
+from mpm.contact.spots import WIDE, lanes_of, new_places, places, spans
 from mpm.contact.tools import carry, lightness, recoil
 from mpm.jit import kernel
 from mpm.lanes import fma, load4, splat4, store
@@ -30,44 +30,50 @@ class Problem(NamedTuple):
     row: np.ndarray  # (C * 2 * M,) the same, in one row
     coef: np.ndarray  # (C, 2, M, WIDE) W/sqrt(m)
     velocity: np.ndarray  # (K, WIDE) v sqrt(m)
+    mass: np.ndarray  # (K,) m
     light: np.ndarray  # (K,) 1/sqrt(m); 0 without mass
     place: np.ndarray  # (K,) where the node is
     field: np.ndarray  # (K,) of which field
     tools: Any
     impulse: np.ndarray  # (C, D) on the A side [kg m/s]
+    bear: np.ndarray  # (C, WIDE) A, a direction each, but for the tool
 
 
 @kernel
-def pose(space, contacts, count, weights, fields, nodes, tools, number):
-    """The problem of contacts 0..count, on the nodes (F, n, columns) that they act on; weights: (at, coef) of weights.py. number (n,): -1 before and after."""
-    D, (at, coef), used = directions(space), weights, 0
-    most = at.shape[0] * at.shape[1] * at.shape[2]
-    place, field = np.empty(most, np.int64), np.empty(most, np.int64)
+def pose(space, walls, fields, contacts, count, nodes, tools, number):
+    """The problem of contacts 0..count, on the nodes (F, n, columns) that they act on, its weights still to come. number (n,): -1 before and after."""
+    D, shape, here, used = directions(space), extents(space), new_places(space), 0
+    n0, n1, n2 = spans(space)
+    at = np.empty((count, 2, n0 * n1 * n2), np.int64)
+    place, field, row = np.empty(at.size, np.int64), np.empty(at.size, np.int64), at.reshape(-1)
     for f in range(nodes.shape[0]):
         first = used
         for i in range(count):
             for k in range(2):
-                if contacts.body[i, k] >= 0 and fields[contacts.body[i, k]] == f:
-                    for m in range(at.shape[2]):
-                        n = at[i, k, m]
-                        if number[n] < 0:
-                            number[n], place[used], field[used] = used, n, f
-                            used += 1
-                        at[i, k, m] = number[n]
+                if contacts.body[i, k] < 0 or fields[contacts.body[i, k]] != f:
+                    continue
+                places(space, walls[f], contacts.home[i, k], here)
+                m = (2 * i + k) * n0 * n1 * n2
+                for j0 in range(n0):
+                    for j1 in range(n1):
+                        for j2 in range(n2):
+                            n = (here[0, j0] * shape[1] + here[1, j1]) * shape[2] + here[2, j2]
+                            if number[n] < 0:
+                                number[n], place[used], field[used] = used, n, f
+                                used += 1
+                            row[m] = number[n]
+                            m += 1
         for j in range(first, used):
             number[place[j]] = -1
-    velocity, light, row = np.zeros((used, WIDE)), np.zeros(used), at.reshape(-1)
+    velocity, mass, light = np.zeros((used, WIDE)), np.empty(used), np.zeros(used)
     for j in range(used):
-        root = np.float64(nodes[field[j], place[j], D]) ** 0.5
+        mass[j] = nodes[field[j], place[j], D]
+        root = mass[j] ** 0.5
         light[j] = 1.0 / root if root > 0.0 else 0.0
         for c in range(D):
             velocity[j, c] = root * nodes[field[j], place[j], c] if root < np.inf else 0.0
-    for i in range(count):
-        for k in range(2):
-            if contacts.body[i, k] >= 0:
-                for m in range((2 * i + k) * at.shape[2], (2 * i + k + 1) * at.shape[2]):
-                    store(coef, WIDE * m, load4(coef, WIDE * m) * splat4(light[np.uint64(row[np.uint64(m)])]))
-    return Problem(contacts, at, row, coef, velocity, light, place[:used], field[:used], tools, np.zeros((count, D)))
+    coef, bear, impulse = np.empty((*at.shape, WIDE)), np.zeros((count, WIDE)), np.zeros((count, D))
+    return Problem(contacts, at, row, coef, velocity, mass, light, place[:used], field[:used], tools, impulse, bear)
 
 
 @kernel
@@ -102,7 +108,7 @@ def press(space, problem, dt, sound, warm, rows):
             live[lively] = i
             lively += 1
     for k in range(lively):
-        begin(problem, live[k], D, warm, rows, u)
+        begin(problem, live[k], D, u)
     for sweep in range(SWEEPS):
         worst, largest = 0.0, FAINT / CLOSE * sound
         for k in range(lively):
@@ -123,16 +129,24 @@ def ready(space, problem, some, dt, warm, rows, inverse):
     """1/A of the contacts some[0] <= i < some[1] that bore an impulse, or are so near that they might; the others' stays zero."""
     contacts, D, u = problem.contacts, directions(space), np.zeros(WIDE)
     for i in range(some[0], some[1]):
-        weight = lightness(problem.tools, contacts.free[i])
-        borne(problem, i, u)
-        most = weight + max(u[0], u[1], u[2])
-        speed(problem, i, D, u)
-        closing, before = 0.0, 0.0
+        most = lightness(problem.tools, contacts.free[i]) + max(problem.bear[i, 0], problem.bear[i, 1], problem.bear[i, 2])
+        if not most > 0.0:
+            continue
+        before, live = 0.0, contacts.gap[i] < SURE * space.h
         for c in range(D):
-            closing += min(u[c] * contacts.normal[i, c], 0.0)
-            before += remembered(contacts, i, c, warm, rows) * contacts.normal[i, c]
-        if most > 0.0 and (before > 0.0 or contacts.gap[i] + 1.5 * dt * closing < SURE * space.h):
+            problem.impulse[i, c] = remembered(contacts, i, c, warm, rows)
+            before += problem.impulse[i, c] * contacts.normal[i, c]
+        if not (live or before > 0.0):
+            speed(problem, i, D, u)
+            closing = 0.0
+            for c in range(D):
+                closing += min(u[c] * contacts.normal[i, c], 0.0)
+            live = contacts.gap[i] + 1.5 * dt * closing < SURE * space.h
+        if live or before > 0.0:
             inverse[i] = 1.0 / most
+            continue
+        for c in range(D):
+            problem.impulse[i, c] = 0.0
 
 
 @kernel(inline=True)
@@ -143,18 +157,6 @@ def remembered(contacts, i, c, warm, rows):
         total += warm[s, row, c]
         s, more = more, contacts.after[more] if more >= 0 else -1
     return total
-
-
-@kernel(inline=True)
-def borne(problem, i, u):
-    """u <- A of contact i, a direction each."""
-    total, M = splat4(0.0), problem.at.shape[2]
-    for k in range(2):
-        if problem.contacts.body[i, k] >= 0:
-            for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
-                weight = load4(problem.coef, WIDE * m)
-                total = fma(weight, weight, total)
-    store(u, 0, total)
 
 
 @kernel(inline=True)
@@ -206,23 +208,23 @@ def push(problem, i, D, change):
 
 
 @kernel(inline=True)
-def begin(problem, i, D, warm, rows, change):
+def begin(problem, i, D, change):
     """The impulse of the step before, within the cone of this one."""
     contacts, along, square = problem.contacts, 0.0, 0.0
     for c in range(D):
-        change[c] = remembered(contacts, i, c, warm, rows)
+        change[c] = problem.impulse[i, c]
         along += change[c] * contacts.normal[i, c]
-    if not along > 0.0:
-        return
+    share, most = 0.0, contacts.mu[i] * along
     for c in range(D):
         change[c] -= along * contacts.normal[i, c]
         square += change[c] ** 2
-    most = contacts.mu[i] * along
-    share = 1.0 if square <= most * most else most / square**0.5
+    if along > 0.0:
+        share = 1.0 if square <= most * most else most / square**0.5
     for c in range(D):
-        change[c] = share * change[c] + along * contacts.normal[i, c]
+        change[c] = share * change[c] + max(along, 0.0) * contacts.normal[i, c]
         problem.impulse[i, c] = change[c]
-    push(problem, i, D, change)
+    if along > 0.0:
+        push(problem, i, D, change)
 
 
 @kernel(inline=True)

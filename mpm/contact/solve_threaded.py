@@ -42,12 +42,12 @@ def homes(space, problem, starts, windows, inverse):
 
 
 @kernel
-def start(space, problem, members, first, which, warm, rows):
+def start(space, problem, members, first, which):
     """The impulses of the step before, of the contacts of the slabs `which`: members[first[s]] and so on."""
     u = np.zeros(WIDE)
     for s in which:
         for i in members[first[s] : first[s + 1]]:
-            begin(problem, i, directions(space), warm, rows, u)
+            begin(problem, i, directions(space), u)
 
 
 @kernel
@@ -82,9 +82,9 @@ def press_in_slabs(space, problem, ahead, sound, touching, slabs, crew) -> None:
     members = np.argsort(home, kind="stable")
     first = np.searchsorted(home[members], np.arange(M + 2))
     alone = first[M] < first[M + 1]
-    crew.work(order, lambda which: start(space, problem, members, first, which, warm, rows))
+    crew.work(order, lambda which: start(space, problem, members, first, which))
     if alone:
-        start(space, problem, members, first, last, warm, rows)
+        start(space, problem, members, first, last)
     for _ in range(SWEEPS // TURNS):
         crew.work(order, lambda which: relax(space, problem, members, first, which, limits, inverse, most))
         if alone:

@@ -9,7 +9,7 @@ from mpm.basis import inverse_moment, stencil
 from mpm.boundary import CONTACT, directions, extents
 from mpm.boundary.walls import held
 from mpm.jit import kernel
-from mpm.lanes import four, item, store
+from mpm.lanes import four, item, put, splat4, store
 from mpm.state import PAD
 from mpm.transfer import uses_basis_gradient
 
@@ -29,6 +29,40 @@ def new_spots(space):
     return np.empty((3, D, reach)), np.zeros((3, reach), np.int64), np.empty((2, D, reach), np.int64)
 
 
+@kernel
+def new_places(space):
+    """Scratch of `places`."""
+    return np.zeros((3, seen(space)), np.int64)
+
+
+@kernel(inline=True)
+def image(walls, a, n, i):
+    """The node that stands for node i of n along direction a, and the side of its mirror: 0, 1, or -1 where a node stands for itself."""
+    if walls[a, 0] < CONTACT and i <= PAD:
+        return 2 * PAD - i, 0
+    if walls[a, 1] < CONTACT and i >= n - 1 - PAD:
+        return 2 * (n - 1 - PAD) - i, 1
+    return i, -1
+
+
+@kernel(inline=True)
+def beside(walls, a, n, i, reach):
+    """Whether any of `reach` nodes from i on, of n along direction a, may be one that another stands for."""
+    return (walls[a, 0] < CONTACT and i <= PAD) or (walls[a, 1] < CONTACT and i + reach >= n - PAD)
+
+
+@kernel(inline=True)
+def places(space, walls, home, place):
+    """The places (3, reach) that `along` fills, and nothing else."""
+    for a in range(directions(space)):
+        i0, n = stencil(space.basis, home[a] * (1.0 / space.h))[0], extents(space)[a]
+        for k in range(seen(space)):
+            place[a, k] = i0 + k
+        if beside(walls, a, n, i0, seen(space)):
+            for k in range(seen(space)):
+                place[a, k] = image(walls, a, n, i0 + k)[0]
+
+
 @kernel(inline=True)
 def along(space, walls, home, spots):
     """Fill what the scratch has per direction, for a particle at `home` (D,) of a body that has mirrors where `walls` (3, 2) say so. Whether one is in sight.
@@ -36,20 +70,17 @@ def along(space, walls, home, spots):
     weights, slopes [1/m] and ways [m] (3, D, reach); places (3, reach), 0 where the space has no such direction; side of the mirror and whether on its plane.
     """
     line, place, mirror = spots
-    D, shape, mirrored, cells = directions(space), extents(space), False, 1.0 / space.h
-    for a in range(D):
+    shape, mirrored, cells = extents(space), False, 1.0 / space.h
+    for a in range(directions(space)):
         i0, wa, ga, da, _ = stencil(space.basis, home[a] * cells)
-        n = shape[a]
         for k in range(len(wa)):
             line[0, a, k], line[1, a, k], line[2, a, k] = wa[k], ga[k] * cells, da[k] * space.h
-            place[a, k], mirror[0, a, k] = i0 + k, -1  # side of the wall; whether on its plane
-        if (walls[a, 0] < CONTACT and i0 <= PAD) or (walls[a, 1] < CONTACT and i0 + len(wa) >= n - PAD):
+            place[a, k], mirror[0, a, k] = i0 + k, -1
+        if beside(walls, a, shape[a], i0, len(wa)):
             for k in range(len(wa)):
-                i = i0 + k
-                if walls[a, 0] < CONTACT and i <= PAD:
-                    place[a, k], mirror[0, a, k], mirror[1, a, k], mirrored = 2 * PAD - i, 0, i == PAD, True
-                elif walls[a, 1] < CONTACT and i >= n - 1 - PAD:
-                    place[a, k], mirror[0, a, k], mirror[1, a, k], mirrored = 2 * (n - 1 - PAD) - i, 1, i == n - 1 - PAD, True
+                place[a, k], mirror[0, a, k] = image(walls, a, shape[a], i0 + k)
+                if mirror[0, a, k] >= 0:
+                    mirror[1, a, k], mirrored = place[a, k] == i0 + k, True
     return mirrored
 
 
@@ -85,17 +116,49 @@ def lanes_of(D, x):
 
 
 @kernel(inline=True)
+def row_of(n, x):
+    """The n numbers of x, one to four, as lanes."""
+    return four(x[0], x[1] if n > 1 else 0.0, x[2] if n > 2 else 0.0, x[3] if n > 3 else 0.0)
+
+
+@kernel(inline=True)
+def gathered(values, row, at, n):
+    """Of n nodes, whose numbers begin at row[at], as lanes."""
+    found = splat4(0.0)
+    for k in range(n):
+        found = put(found, k, values[np.uint64(row[np.uint64(at + k)])])
+    return found
+
+
+@kernel(inline=True)
+def gradients(space, gradient, spots, lines):
+    """Of each direction, lanes whose products of three are the gradient operator; after `along`."""
+    line, own = spots[0], uses_basis_gradient(gradient)
+    scale = 0.0 if own else inverse_moment(space.basis) / space.h**2
+    for a in range(directions(space)):
+        for k in range(seen(space)):
+            w, g = line[0, a, k], line[1, a, k] if own else scale * line[0, a, k] * line[2, a, k]
+            store(lines, WIDE * (a * seen(space) + k), four(g if a == 0 else w, g if a == 1 else w, g if a == 2 else w, 0.0))
+
+
+@kernel(inline=True)
+def level(space, lines):
+    """As `turns` wants them, where nothing turns: one for what is a direction."""
+    D = directions(space)
+    for k in range(D * seen(space)):
+        store(lines, WIDE * k, four(1.0, 1.0 if D > 1 else 0.0, 1.0 if D > 2 else 0.0, 0.0))
+
+
+@kernel(inline=True)
 def turns(space, walls, spots, lines):
-    """The signs of a vector on the nodes, as products of three, and nothing for what is no direction; after `along`."""
+    """Turn the lanes of each direction by the signs of a vector on the nodes, whose products of three they are; after `along`."""
     mirror, D = spots[2], directions(space)
-    plain = four(1.0, 1.0 if D > 1 else 0.0, 1.0 if D > 2 else 0.0, 0.0)
     for a in range(D):
         for k in range(seen(space)):
-            store(lines, WIDE * (a * seen(space) + k), plain)
             if mirror[0, a, k] >= 0:
                 for c in range(D):
                     if held(walls[a, mirror[0, a, k]], a, c):
-                        lines[a, k, c] = 0.0 if mirror[1, a, k] == 1 else -1.0
+                        lines[a, k, c] *= 0.0 if mirror[1, a, k] == 1 else -1.0
 
 
 @kernel(inline=True)

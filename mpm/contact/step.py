@@ -127,8 +127,8 @@ def meet(method, bodies, touching, skin, sums, grids, now, pace, reports):
         if not hold_good(space, touching.walls, touching.fields, sums, contacts, count, touching.number):
             sums = make_room(space, touching.walls, touching.fields, sums, contacts, count, touching.number)
             add_up(space, method.gradient, bodies, touching.walls, touching.fields, skin, sums, touching.number)
-        weights = weigh(space, method.gradient, touching.walls, touching.fields, skin, sums, contacts, count, nodes, touching.number)
-        problem = pose(space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
+        problem = pose(space, touching.walls, touching.fields, contacts, count, nodes, touching.tools, touching.number)
+        weigh(space, method.gradient, touching.walls, touching.fields, skin, sums, problem, touching.number)
         press(space, problem, pace.ahead, pace.sound, touching.warm, touching.rows)
         finish(method, touching, skin, sums, grids, now, pace, problem)
     return sums

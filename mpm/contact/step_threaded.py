@@ -11,8 +11,8 @@ from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import pose
 from mpm.contact.solve_threaded import PART, press_in_slabs
 from mpm.contact.step import after_contacts, before_contacts, finish, seek
-from mpm.contact.sums import fall_short, forget, hold_good, lean_all, make_room, new_sums, recall
-from mpm.contact.weights import new_weights, shares
+from mpm.contact.sums import fall_short, forget, hold_good, lean_all, make_room, new_sums, pieces_within, recall
+from mpm.contact.weights import seats, shares
 from mpm.integrate.step_parts import method_of, scratch
 from mpm.integrate.step_threaded import steps_in_slabs, wave
 from mpm.integrate.strain import SPEED
@@ -40,8 +40,8 @@ def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
             if not hold_good(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number):
                 sums = make_room(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number)
                 add_up_in_slabs(scene, touching, skin, sums, slabs, crew)
-            weights = weigh_in_slabs(scene, touching, skin, sums, (contacts, count), nodes, crew)
-            problem = pose(scene.space, contacts, count, weights, touching.fields, nodes, touching.tools, touching.number)
+            problem = pose(scene.space, touching.walls, touching.fields, contacts, count, nodes, touching.tools, touching.number)
+            weigh_in_slabs(scene, touching, skin, sums, problem, crew)
             press_in_slabs(scene.space, problem, pace.ahead, pace.sound, touching, slabs, crew)
             finish(method, touching, skin, sums, grids, now, pace, problem)
         after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, slabs.reports[-1])
@@ -59,13 +59,15 @@ def apart(scene, walls, slabs) -> bool:
 def add_up_in_slabs(scene, touching, skin, sums, slabs, crew) -> None:
     """sums.add_up, by threads; where slabs are not `apart`, by one, in the same order."""
     space, number, order = scene.space, touching.number, wave(slabs.starts.shape[1] - 1)
-    lay_skins(space, scene.for_motion, skin, skin.every, skin.first)
+    pieces = pieces_within(space, skin, sums)
+    lay_skins(space, scene.for_motion, skin, *pieces)
     for b, body in enumerate(scene.for_motion):
         walls = touching.walls[touching.fields[b]]
 
         def add(which, walls=walls, b=b, body=body):
             for s in which:
-                fall_short(space, scene.gradient, body.particles, b, walls, skin, sums, number, (int(slabs.starts[b, s]), int(slabs.starts[b, s + 1])))
+                part = int(slabs.starts[b, s]), int(slabs.starts[b, s + 1])
+                fall_short(space, scene.gradient, body.particles, b, walls, skin, pieces, sums, number, part)
 
         if sums.first[b] < sums.first[b + 1]:
             recall(sums, b, number)
@@ -77,18 +79,16 @@ def add_up_in_slabs(scene, touching, skin, sums, slabs, crew) -> None:
     lean_all(space, sums)
 
 
-def weigh_in_slabs(scene, touching, skin, sums, near, nodes, crew):
+def weigh_in_slabs(scene, touching, skin, sums, problem, crew) -> None:
     """weights.weigh, by threads."""
-    (contacts, count), space, number = near, scene.space, touching.number
-    weights, parts = new_weights(space, count), 2 * np.arange(-(-count // PART))  # even: they wait for nobody
+    space, count = scene.space, len(problem.impulse)
+    parts = 2 * np.arange(-(-count // PART))  # even: they wait for nobody
     for b, f in enumerate(touching.fields):
+        seat = seats(sums, b, f, problem, touching.number)
 
-        def share(which, f=f, b=b):
+        def share(which, f=f, b=b, seat=seat):
             for part in which // 2:
                 some = int(part) * PART, min(count, (int(part) + 1) * PART)
-                shares(space, scene.gradient, b, touching.walls[f], skin, sums, contacts, some, nodes[f], number, weights)
+                shares(space, scene.gradient, b, touching.walls[f], skin, sums, seat, problem, some)
 
-        recall(sums, b, number)
         crew.work(parts, share)
-        forget(sums, b, number)
-    return weights

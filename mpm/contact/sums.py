@@ -10,11 +10,11 @@ import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions, extents
-from mpm.contact.found import CLEAR
+from mpm.contact.found import CLEAR, STRAY
 from mpm.contact.skin import hoop, lay_skins
-from mpm.contact.spots import WIDE, along, lanes_of, new_lines, new_slopes, new_spots, slopes, spans, turns
+from mpm.contact.spots import WIDE, along, gradients, lanes_of, level, new_lines, new_places, new_slopes, new_spots, places, slopes, spans, turns
 from mpm.jit import kernel
-from mpm.lanes import fma, four, item, load4, splat4, store
+from mpm.lanes import fma, item, load4, splat4, store
 from mpm.state import PAD
 
 LAG = 0.01  # cells
@@ -61,8 +61,7 @@ def hold_good(space, walls, fields, sums, contacts, count, number):
     """Whether the sums are there for every balanced contact, and not too old."""
     if not sums.moved[0] <= LAG * space.h:
         return False
-    shape, spots, fine = extents(space), new_spots(space), True
-    place = spots[1]
+    shape, place, fine = extents(space), new_places(space), True
     n0, n1, n2 = spans(space)
     for b in range(len(fields)):
         recall(sums, b, number)
@@ -70,7 +69,7 @@ def hold_good(space, walls, fields, sums, contacts, count, number):
             for k in range(2):
                 if not fine or contacts.body[i, k] != b or not contacts.balanced[i, k]:
                     continue
-                along(space, walls[fields[b]], contacts.home[i, k], spots)
+                places(space, walls[fields[b]], contacts.home[i, k], place)
                 for j0 in range(n0):
                     for j1 in range(n1):
                         for j2 in range(n2):
@@ -92,14 +91,14 @@ def make_room(space, walls, fields, sums, contacts, count, number):
 @kernel
 def mark(space, b, walls, sums, contacts, count, number):
     """Number the nodes where body b is balanced, from sums.first[b] on, and keep them; how many then. The box (low, high) of what touches them."""
-    D, shape, spots, marked = directions(space), extents(space), new_spots(space), sums.first[b]
-    place, low, high = spots[1], np.full(directions(space), 1e300), np.full(directions(space), -1e300)
+    D, shape, place, marked = directions(space), extents(space), new_places(space), sums.first[b]
+    low, high = np.full(directions(space), 1e300), np.full(directions(space), -1e300)
     n0, n1, n2 = spans(space)
     for i in range(count):
         for k in range(2):
             if contacts.body[i, k] != b or not contacts.balanced[i, k]:
                 continue
-            along(space, walls, contacts.home[i, k], spots)
+            places(space, walls, contacts.home[i, k], place)
             for j0 in range(n0):
                 for j1 in range(n1):
                     for j2 in range(n2):
@@ -118,15 +117,41 @@ def mark(space, b, walls, sums, contacts, count, number):
 @kernel
 def add_up(space, gradient, bodies, walls, fields, skin, sums, number):
     """All of the sums, from all of the particles and pieces."""
-    lay_skins(space, bodies, skin, skin.every, skin.first)
+    pieces = pieces_within(space, skin, sums)
+    lay_skins(space, bodies, skin, *pieces)
     b = 0
     for body in literal_unroll(bodies):
         if sums.first[b] < sums.first[b + 1]:
             recall(sums, b, number)
-            fall_short(space, gradient, body.particles, b, walls[fields[b]], skin, sums, number, (0, body.particles.x.shape[0]))
+            fall_short(space, gradient, body.particles, b, walls[fields[b]], skin, pieces, sums, number, (0, body.particles.x.shape[0]))
             forget(sums, b, number)
         b += 1
     lean_all(space, sums)
+
+
+@kernel
+def pieces_within(space, skin, sums):
+    """The pieces whose particles may lie in the boxes of the sums, by where they were last laid: they have moved by less than STRAY since. (which, first)."""
+    some, starts, margin = np.empty(len(skin.area), np.int64), np.zeros(len(skin.first), np.int64), STRAY * space.h
+    for b in range(len(starts) - 1):
+        found, lead = starts[b], thinnest(sums.box[b])
+        low, high = sums.box[b, 0, lead] - margin, sums.box[b, 1, lead] + margin
+        if sums.first[b] < sums.first[b + 1]:
+            for s in range(skin.first[b], skin.first[b + 1]):
+                some[found] = s
+                found += low <= skin.home[s, lead] <= high
+        starts[b + 1] = found
+    return some, starts
+
+
+@kernel(inline=True)
+def thinnest(box):
+    """The direction in which a box (2, D) is thinnest."""
+    lead = 0
+    for a in range(1, box.shape[1]):
+        if box[1, a] - box[0, a] < box[1, lead] - box[0, lead]:
+            lead = a
+    return lead
 
 
 @kernel
@@ -140,20 +165,22 @@ def lean_all(space, sums):
 
 
 @kernel
-def fall_short(space, gradient, particles, b, walls, skin, sums, number, some):
+def fall_short(space, gradient, particles, b, walls, skin, pieces, sums, number, some):
     """r and T of the marked nodes, from the particles some[0] <= p < some[1] of body b within the box of its sums, and from their pieces."""
     room = new_spots(space), new_lines(space), new_slopes(space)
     from_particles(space, gradient, particles, b, walls, sums, number, some, room, np.empty(directions(space)))
-    from_pieces(space, gradient, b, walls, skin, sums, number, some, room)
+    from_pieces(space, gradient, b, walls, skin, pieces, sums, number, some, room)
 
 
 @kernel(inline=True)
 def from_particles(space, gradient, particles, b, walls, sums, number, some, room, home):
     """V G of the particles, and along r of an axisymmetric body V w/r."""
-    (spots, signs, slope), D, shape, lack = room, directions(space), extents(space), sums.lack
+    (spots, lines, _), D, shape, lack, lead = room, directions(space), extents(space), sums.lack, thinnest(sums.box[b])
     low, high, place, (n0, n1, n2) = sums.box[b, 0], sums.box[b, 1], spots[1], spans(space)
-    turned = True  # by mirrors, the signs of the particle before; of none yet
+    least, most = low[lead], high[lead]
     for p in range(some[0], some[1]):
+        if not least <= particles.x[p, lead] <= most:
+            continue
         inside = True
         for a in range(D):
             home[a] = particles.x[p, a]
@@ -161,30 +188,30 @@ def from_particles(space, gradient, particles, b, walls, sums, number, some, roo
         if not inside:
             continue
         mirrored = along(space, walls, home, spots)
-        slopes(space, gradient, spots, slope)
-        if mirrored or turned:
-            turns(space, walls, spots, signs)
-        turned = mirrored
-        V, inward = np.float64(particles.V0[p]) * np.float64(particles.J[p]), 1.0 / home[0] if hoop(space) else 0.0
+        gradients(space, gradient, spots, lines)
+        if hoop(space):
+            for i in range(n0):
+                lines[0, i, 0] += spots[0][0, 0, i] / home[0]
+        if mirrored:
+            turns(space, walls, spots, lines)
+        V = splat4(np.float64(particles.V0[p]) * np.float64(particles.J[p]))
         for i in range(n0):
-            w, g = V * slope[0, 0, i], V * (slope[1, 0, i] + inward * slope[0, 0, i])
-            first = four(g, w, w, 0.0) * load4(signs, WIDE * i)
+            one = V * load4(lines, WIDE * i)
             for j in range(n1):
-                w, g, row = slope[0, 1, j], slope[1, 1, j], (place[0, i] * shape[1] + place[1, j]) * shape[2]
-                both = first * four(w, g, w, 0.0) * load4(signs, WIDE * (n0 + j))
+                both, row = one * load4(lines, WIDE * (n0 + j)), (place[0, i] * shape[1] + place[1, j]) * shape[2]
                 for k in range(n2):
-                    n, w, g = number[row + place[2, k]], slope[0, 2, k], slope[1, 2, k]
+                    n = number[np.uint64(row + place[2, k])]
                     if n >= 0:
-                        store(lack, WIDE * n, fma(both, four(w, w, g, 0.0) * load4(signs, WIDE * (2 * n0 + k)), load4(lack, WIDE * n)))
+                        store(lack, WIDE * n, fma(both, load4(lines, WIDE * (2 * n0 + k)), load4(lack, WIDE * n)))
 
 
 @kernel(inline=True)
-def from_pieces(space, gradient, b, walls, skin, sums, number, some, room):
+def from_pieces(space, gradient, b, walls, skin, pieces, sums, number, some, room):
     """S n w~ and S w n n^T of the pieces."""
-    (spots, signs, slope), D, shape, lack, T = room, directions(space), extents(space), sums.lack, sums.T
+    (spots, signs, slope), D, shape, lack, T, (which, first) = room, directions(space), extents(space), sums.lack, sums.T, pieces
     low, high, place, (n0, n1, n2) = sums.box[b, 0], sums.box[b, 1], spots[1], spans(space)
-    turned = True
-    for s in range(skin.first[b], skin.first[b + 1]):
+    for at in range(first[b], first[b + 1]):
+        s = which[at]
         inside = skin.area[s] > 0.0 and some[0] <= skin.owner[s] < some[1]
         for a in range(D):
             inside = inside and low[a] <= skin.home[s, a] <= high[a]
@@ -192,22 +219,23 @@ def from_pieces(space, gradient, b, walls, skin, sums, number, some, room):
             continue
         mirrored = along(space, walls, skin.home[s], spots)
         slopes(space, gradient, spots, slope)
-        if mirrored or turned:
+        if mirrored:
+            level(space, signs)
             turns(space, walls, spots, signs)
-        turned = mirrored
         way, pressed = lanes_of(D, skin.x[s]) - lanes_of(D, skin.home[s]), splat4(skin.area[s]) * lanes_of(D, skin.normal[s])
         ahead0, ahead1, ahead2 = item(way, 0), item(way, 1), item(way, 2)
         for i in range(n0):
             for j in range(n1):
                 row, both = (place[0, i] * shape[1] + place[1, j]) * shape[2], slope[0, 0, i] * slope[0, 1, j]
                 rest = both + ahead0 * slope[1, 0, i] * slope[0, 1, j] + ahead1 * slope[0, 0, i] * slope[1, 1, j]
-                facing = load4(signs, WIDE * i) * load4(signs, WIDE * (n0 + j))
                 for k in range(n2):
-                    n = number[row + place[2, k]]
+                    n = number[np.uint64(row + place[2, k])]
                     if n < 0:
                         continue
-                    weight, sign = rest * slope[0, 2, k] + ahead2 * both * slope[1, 2, k], facing * load4(signs, WIDE * (2 * n0 + k))
-                    store(lack, WIDE * n, fma(splat4(-weight) * sign, pressed, load4(lack, WIDE * n)))
+                    weight, push = rest * slope[0, 2, k] + ahead2 * both * slope[1, 2, k], pressed
+                    if mirrored:
+                        push = pressed * load4(signs, WIDE * i) * load4(signs, WIDE * (n0 + j)) * load4(signs, WIDE * (2 * n0 + k))
+                    store(lack, WIDE * n, fma(splat4(-weight), push, load4(lack, WIDE * n)))
                     borne = splat4(both * slope[0, 2, k]) * pressed
                     for c in range(D):
                         store(T, WIDE * (D * n + c), fma(splat4(skin.normal[s, c]), borne, load4(T, WIDE * (D * n + c))))

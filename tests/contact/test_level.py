@@ -10,6 +10,7 @@ from mpm.config import load
 from mpm.contact.find import find_all, list_near
 from mpm.contact.found import FLAT, NEAR
 from mpm.contact.skin import lay_skins, new_skin
+from mpm.contact.solve import pose
 from mpm.contact.sums import LAG, add_up, hold_good, make_room, new_sums
 from mpm.contact.weights import weigh
 from mpm.scene.build import build
@@ -64,9 +65,11 @@ def test_weights_of_several_are_linear_exact_and_kept(dimension):
     args = space, touching.walls, touching.fields
     sums = make_room(*args, new_sums(space, 1), contacts, count, touching.number)
     add_up(space, scene.gradient, scene.for_motion, touching.walls, touching.fields, skin, sums, touching.number)
-    at, coef = weigh(space, scene.gradient, touching.walls, touching.fields, skin, sums, contacts, count, nodes, touching.number)
-    places = (np.stack(np.unravel_index(at[:count, 0], extents(space)[:D]), axis=-1) - PAD) * space.h
-    W = coef[:count, 0, :, 0]
+    problem = pose(space, touching.walls, touching.fields, contacts, count, nodes, touching.tools, touching.number)
+    weigh(space, scene.gradient, touching.walls, touching.fields, skin, sums, problem, touching.number)
+    places = (np.stack(np.unravel_index(problem.place[problem.at[:, 0]], extents(space)[:D]), axis=-1) - PAD) * space.h
+    W = problem.coef[:, 0, :, 0]
+    assert problem.bear[:, :D] == pytest.approx(np.repeat((W**2).sum(axis=1)[:, None], D, axis=1), rel=1e-12)
     assert W.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
     assert np.einsum("im,ima->ia", W, places) == pytest.approx(contacts.point[:count, 0], abs=1e-12)
     assert hold_good(*args, sums, contacts, count, touching.number)

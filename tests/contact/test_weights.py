@@ -9,7 +9,7 @@ from mpm.boundary.walls import held
 from mpm.contact.found import new_contacts
 from mpm.contact.skin import hoop, new_skin
 from mpm.contact.spots import along, new_spots, seen
-from mpm.contact.sums import fall_short, hold_good, make_room, new_sums, recall
+from mpm.contact.sums import fall_short, hold_good, make_room, new_sums, pieces_within, recall
 from mpm.state import PAD, Axisymmetric, Cubic, Line, Particles, Plane, Quadratic, Volume
 from mpm.transfer import Bspline, Mls, uses_basis_gradient
 
@@ -93,7 +93,7 @@ def test_sums_over_particles_and_pieces(name, gradient, basis):
     assert (number == -1).all() and hold_good(space, walls[None], fields, sums, contacts, C, number)
     recall(sums, 0, number)
     for some in ((0, 20), (20, N)):
-        fall_short(space, gradient, particles, 0, walls, skin, sums, number, some)
+        fall_short(space, gradient, particles, 0, walls, skin, pieces_within(space, skin, sums), sums, number, some)
 
     r, T = np.zeros((SIZE**D, D)), np.zeros((SIZE**D, D, D))
     spots, marked = new_spots(space), set()
