@@ -124,10 +124,10 @@ def alike(skin, s, t):
 @kernel(inline=True)
 def corner_of(space, home):
     """The first of the nodes that a particle at `home` sees; -1 where rounding may tell."""
-    n, sure = 0, True
+    n, sure, cells = 0, True, 1.0 / space.h
     for a in range(len(home)):
-        first, _, _, _, _ = stencil(space.basis, home[a] / space.h - CLEAR)
-        last, _, _, _, _ = stencil(space.basis, home[a] / space.h + CLEAR)
+        first, _, _, _, _ = stencil(space.basis, home[a] * cells - CLEAR)
+        last, _, _, _, _ = stencil(space.basis, home[a] * cells + CLEAR)
         n, sure = n * extents(space)[a] + first, sure and first == last
     return n if sure else -1
 

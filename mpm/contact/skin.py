@@ -7,8 +7,10 @@ from numba import literal_unroll
 
 from mpm.boundary import directions
 from mpm.jit import kernel, role
+from mpm.lanes import fetch_ahead
 from mpm.state import Axisymmetric, Line, NoExchange, Plane, Surface, Volume
 
+AHEAD = 8  # pieces whose particles begin to come from memory
 POINT = 1e-9  # of a face of a cell: the area of a piece that is a corner
 
 
@@ -64,8 +66,13 @@ def lay_skin_no_exchange(surface, space, body, skin, first, some):
 @lay_skin.register(Surface)
 def lay_skin_surface(surface, space, body, skin, first, some):
     D, x, J = directions(space), body.particles.x, body.particles.J
-    for k in some:
-        s = k - first
+    for at in range(len(some)):
+        k = some[at]
+        s, later = k - first, some[min(at + AHEAD, len(some) - 1)] - first
+        if later < surface.owner.shape[0]:  # what its pieces stand by is strewn over the state of the body
+            fetch_ahead(x, D * surface.owner[later])
+            fetch_ahead(J, surface.owner[later])
+            fetch_ahead(surface.F, D * D * surface.row[surface.owner[later]])
         if s >= surface.owner.shape[0]:  # still to come
             break
         p = surface.owner[s]

@@ -1,7 +1,8 @@
 """The impulses of a step: projected Gauss-Seidel over the contacts, from those of the step before.
 
 A = sum W_A^2/m_i + sum W_B^2/m_j, the same for every direction;   lambda_n <- max(0, lambda_n - (u_n + max(g/dt, -PUSH c))/A),
-lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when no contact changes its speed A lambda by more than CLOSE of the largest, or after SWEEPS.
+lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when a sweep over all changes no speed A lambda by more than CLOSE of the largest, or after SWEEPS.
+Between two such sweeps come those over the contacts that still changed by more than QUIET of that: they are soon few.
 W/sqrt(m) and v sqrt(m) are worked with: no sweep asks for a mass. A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
 Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work;
 of scenes in slabs: solve_threaded.py.
@@ -18,6 +19,7 @@ from mpm.jit import kernel
 from mpm.lanes import fma, load4, splat4, store
 
 PUSH, CLOSE, SWEEPS = 0.01, 3e-3, 60
+QUIET = 0.3
 FAINT = 1e-9  # of the speed of sound: smaller changes are none
 SURE = 0.1  # cells: closer gaps are always in the sweeps
 
@@ -101,7 +103,7 @@ def press(space, problem, dt, sound, warm, rows):
     warm (P, against, D): impulses of the step before; rows (against,): where they are kept. Those of contacts far off are zero.
     """
     count, D = len(problem.impulse), directions(space)
-    inverse, live, lively, u = np.zeros(count), np.empty(count, np.int64), 0, np.zeros(WIDE)
+    inverse, live, lively, u, quiet = np.zeros(count), np.empty(count, np.int64), 0, np.zeros(WIDE), np.zeros(count, np.bool_)
     ready(space, problem, (0, count), dt, warm, rows, inverse)
     for i in range(count):
         if inverse[i] > 0.0:
@@ -109,13 +111,26 @@ def press(space, problem, dt, sound, warm, rows):
             lively += 1
     for k in range(lively):
         begin(problem, live[k], D, u)
+    largest, every = FAINT / CLOSE * sound, True
     for sweep in range(SWEEPS):
-        worst, largest = 0.0, FAINT / CLOSE * sound
-        for k in range(lively):
-            changed, given = one(problem, live[k if sweep % 2 == 0 else lively - 1 - k], D, dt, sound, inverse, u)
-            worst, largest = max(worst, changed), max(largest, given)
-        if worst <= CLOSE * largest:
+        worst, still = sweep_over(problem, live[:lively], sweep % 2, every, D, dt, sound, inverse, u, quiet, largest)
+        largest = still if every else max(largest, still)
+        if every and worst <= CLOSE * largest:
             break
+        every = worst <= CLOSE * largest
+
+
+@kernel(inline=True)
+def sweep_over(problem, some, back, every, D, dt, sound, inverse, u, quiet, scale):
+    """Relax the contacts `some`, from the last on where `back`, only those not `quiet` where not `every`. The largest change of a speed, and speed."""
+    worst, largest = 0.0, FAINT / CLOSE * sound
+    for k in range(len(some)):
+        i = some[len(some) - 1 - k if back == 1 else k]
+        if every or not quiet[i]:
+            changed, given = one(problem, i, D, dt, sound, inverse, u)
+            worst, largest = max(worst, changed), max(largest, given)
+            quiet[i] = changed <= QUIET * CLOSE * max(scale, largest)
+    return worst, largest
 
 
 @kernel(inline=True)

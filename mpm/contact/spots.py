@@ -110,6 +110,17 @@ def slopes(space, gradient, spots, lines):
 
 
 @kernel(inline=True)
+def slopes_at(space, gradient, home, lines):
+    """As `along` and `slopes`, for a particle at `home`."""
+    own, cells = uses_basis_gradient(gradient), 1.0 / space.h
+    scale = 0.0 if own else inverse_moment(space.basis) / space.h
+    for a in range(directions(space)):
+        _, wa, ga, da, _ = stencil(space.basis, home[a] * cells)
+        for k in range(len(wa)):
+            lines[0, a, k], lines[1, a, k] = wa[k], ga[k] * cells if own else scale * wa[k] * da[k]
+
+
+@kernel(inline=True)
 def lanes_of(D, x):
     """The D numbers of x as lanes. Put together in registers: a vector that is loaded from where single numbers were just stored waits for all of them."""
     return four(x[0], x[1] if D > 1 else 0.0, x[2] if D > 2 else 0.0, 0.0)
@@ -172,6 +183,12 @@ def spans(space):
 def sum4(a):
     """Of all lanes."""
     return (item(a, 0) + item(a, 1)) + (item(a, 2) + item(a, 3))
+
+
+@kernel(inline=True)
+def products(a):
+    """a_2 a_3, a_1 a_3, a_1 a_2."""
+    return four(item(a, 1) * item(a, 2), item(a, 0) * item(a, 2), item(a, 0) * item(a, 1), 0.0)
 
 
 @kernel(inline=True)

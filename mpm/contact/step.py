@@ -8,9 +8,10 @@ import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions, extents
+from mpm.boundary.blocks import mark_box, thin
 from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all, list_near
-from mpm.contact.found import BODY, NEAR, whole
+from mpm.contact.found import BODY, NEAR, STRAY, whole
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import apart, pose, press, settle, speed
@@ -72,20 +73,28 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
     for f in range(fields):
         empty(shape, grids.boxes[f, 0])
         empty(shape, grids.boxes[f, 1])
+    sparse = True
     for step in range(-1, steps):
         opening, last, now = step < 0, step == steps - 1, step % 2
         if not opening:
+            if not sparse:
+                for f in range(fields):
+                    mark_box(grids.blocks[f, now], directions(method.space), shape, grids.boxes[f, now])
             before_contacts(method, bodies, chunk, touching, grids, (step, now), gravity, pace)
             sums = meet(method, bodies, touching, skin, sums, grids, now, pace, reports)
             after_contacts(method, bodies, chunk, touching, grids, now, pace.dt, reports)
-        moment = Moment(now, pace.kick if opening else pace.dt, step, pace.begun, opening, last, steps >= 0)  # marks are always wanted here
+        moment = Moment(now, pace.kick if opening else pace.dt, step, pace.begun, opening, last, sparse)
         ok, b = True, 0
         for body in literal_unroll(bodies):
             ok = ok and pass_body(method, body, chunk, field_buffers(grids, touching.fields[b]), moment, reports[b])
             b += 1
         if not ok:
             return
-        if not opening:
+        if opening:
+            sparse = False
+            for f in range(fields):
+                sparse = sparse or thin(shape, grids.boxes[f, 1 - now], grids.blocks[f, 1 - now])
+        else:
             for f in range(fields):
                 clean(method, field_buffers(grids, f), now)
 
@@ -167,9 +176,14 @@ def keep_books(space, touching, skin, problem, pace):
     """Impulses for the next step, and what the records want to know. Whether anything was pressed."""
     D, B, pressed, contacts, impulse = directions(space), len(touching.first) - 1, False, problem.contacts, problem.impulse
     way, moment, goes, slip = np.zeros(3), np.zeros(3), np.zeros(D), np.zeros(WIDE)
-    touching.warm[:], dt = 0.0, pace.dt
+    dt = pace.dt
+    forget_warm(touching.warm, skin.near[: skin.starts[-1]], skin.left[0] < STRAY * space.h)
     for i in range(len(impulse)):
-        s, row, along = contacts.piece[i], touching.rows[contacts.against[i]], 0.0
+        s, row, along, size = contacts.piece[i], touching.rows[contacts.against[i]], 0.0, 0.0
+        for c in range(D):
+            size = max(size, abs(impulse[i, c]))
+        if size == 0.0 and contacts.gap[i] > TOUCH * space.h:
+            continue
         a, b, to = contacts.body[i, 0], contacts.body[i, 1], contacts.against[i]
         arm(touching.tools, to - BODY - B if to >= BODY + B else -1, contacts.point[i, 0], way)
         cross(way, impulse[i], moment)
@@ -204,6 +218,18 @@ def keep_books(space, touching, skin, problem, pace):
                 touching.spread[a, to] += skin.area[s] * dt
             s, more = more, contacts.after[more] if more >= 0 else -1
     return pressed
+
+
+@kernel(inline=True)
+def forget_warm(warm, near, listed):
+    """No impulses: of the pieces `near` alone where those were `listed` before this step, as no other bore any in the one before."""
+    if not listed:
+        warm[:] = 0.0
+        return
+    for s in near:
+        for row in range(warm.shape[1]):
+            for c in range(warm.shape[2]):
+                warm[s, row, c] = 0.0
 
 
 @kernel(inline=True)

@@ -10,9 +10,9 @@ import numpy as np
 from numba import literal_unroll
 
 from mpm.boundary import directions, extents
-from mpm.contact.found import CLEAR, STRAY
+from mpm.contact.found import BODY, CLEAR, STRAY
 from mpm.contact.skin import hoop, lay_skins
-from mpm.contact.spots import WIDE, along, gradients, lanes_of, level, new_lines, new_places, new_slopes, new_spots, places, slopes, spans, turns
+from mpm.contact.spots import WIDE, along, gradients, lanes_of, level, new_lines, new_places, new_slopes, new_spots, places, products, slopes, spans, turns
 from mpm.jit import kernel
 from mpm.lanes import fma, item, load4, splat4, store
 from mpm.state import PAD
@@ -28,7 +28,8 @@ class Sums(NamedTuple):
     box: np.ndarray  # (B, 2, D) the particles that touch them lie within [m]
     moved: np.ndarray  # (1,) how far any of them may have moved since [m]
     lack: np.ndarray  # (K, WIDE) r
-    T: np.ndarray  # (K, D, WIDE)
+    diagonal: np.ndarray  # (K, WIDE) T_cc
+    beside: np.ndarray  # (K, WIDE) T_yz, T_xz, T_xy; of no nodes where walls alone are met
     lean: np.ndarray  # (K, WIDE) r_c/T_cc; 0 where there is no face
 
 
@@ -38,8 +39,8 @@ def new_sums(space, B):
     D, n = directions(space), 1
     for length in extents(space):
         n *= length
-    return Sums(np.empty(B * n, np.int64), np.zeros(B + 1, np.int64), np.empty((B, 2, D)), np.full(1, np.inf), np.zeros((0, WIDE)), np.zeros((0, D, WIDE)),
-                np.zeros((0, WIDE)))  # fmt: skip
+    none = np.zeros((0, WIDE))
+    return Sums(np.empty(B * n, np.int64), np.zeros(B + 1, np.int64), np.empty((B, 2, D)), np.full(1, np.inf), none, none, none, none)
 
 
 @kernel
@@ -59,7 +60,7 @@ def forget(sums, b, number):
 @kernel
 def hold_good(space, walls, fields, sums, contacts, count, number):
     """Whether the sums are there for every balanced contact, and not too old."""
-    if not sums.moved[0] <= LAG * space.h:
+    if not sums.moved[0] <= LAG * space.h or (len(sums.beside) == 0 and slanted(contacts, count)):
         return False
     shape, place, fine = extents(space), new_places(space), True
     n0, n1, n2 = spans(space)
@@ -84,8 +85,18 @@ def make_room(space, walls, fields, sums, contacts, count, number):
     for b in range(len(fields)):
         sums.first[b + 1] = mark(space, b, walls[fields[b]], sums, contacts, count, number)
         forget(sums, b, number)
-    K, D = sums.first[-1], directions(space)
-    return Sums(sums.place, sums.first, sums.box, np.zeros(1), np.zeros((K, WIDE)), np.zeros((K, D, WIDE)), np.zeros((K, WIDE)))
+    K = sums.first[-1]
+    beside = np.zeros((K if slanted(contacts, count) else 0, WIDE))
+    return Sums(sums.place, sums.first, sums.box, np.zeros(1), np.zeros((K, WIDE)), np.zeros((K, WIDE)), beside, np.zeros((K, WIDE)))
+
+
+@kernel(inline=True)
+def slanted(contacts, count):
+    """Whether anything but walls is met: normals of those are directions."""
+    for i in range(count):
+        if contacts.against[i] >= BODY:
+            return True
+    return False
 
 
 @kernel
@@ -160,8 +171,8 @@ def lean_all(space, sums):
     least = 1e-12 * space.h ** (directions(space) - 1)
     for k in range(len(sums.lean)):
         for c in range(directions(space)):
-            if sums.T[k, c, c] > least:
-                sums.lean[k, c] = sums.lack[k, c] / sums.T[k, c, c]
+            if sums.diagonal[k, c] > least:
+                sums.lean[k, c] = sums.lack[k, c] / sums.diagonal[k, c]
 
 
 @kernel
@@ -208,7 +219,7 @@ def from_particles(space, gradient, particles, b, walls, sums, number, some, roo
 @kernel(inline=True)
 def from_pieces(space, gradient, b, walls, skin, pieces, sums, number, some, room):
     """S n w~ and S w n n^T of the pieces."""
-    (spots, signs, slope), D, shape, lack, T, (which, first) = room, directions(space), extents(space), sums.lack, sums.T, pieces
+    (spots, signs, slope), D, shape, lack, (which, first) = room, directions(space), extents(space), sums.lack, pieces
     low, high, place, (n0, n1, n2) = sums.box[b, 0], sums.box[b, 1], spots[1], spans(space)
     for at in range(first[b], first[b + 1]):
         s = which[at]
@@ -223,6 +234,7 @@ def from_pieces(space, gradient, b, walls, skin, pieces, sums, number, some, roo
             level(space, signs)
             turns(space, walls, spots, signs)
         way, pressed = lanes_of(D, skin.x[s]) - lanes_of(D, skin.home[s]), splat4(skin.area[s]) * lanes_of(D, skin.normal[s])
+        square, crossed, pairs = pressed * lanes_of(D, skin.normal[s]), splat4(skin.area[s]) * products(lanes_of(D, skin.normal[s])), len(sums.beside) > 0
         ahead0, ahead1, ahead2 = item(way, 0), item(way, 1), item(way, 2)
         for i in range(n0):
             for j in range(n1):
@@ -236,6 +248,7 @@ def from_pieces(space, gradient, b, walls, skin, pieces, sums, number, some, roo
                     if mirrored:
                         push = pressed * load4(signs, WIDE * i) * load4(signs, WIDE * (n0 + j)) * load4(signs, WIDE * (2 * n0 + k))
                     store(lack, WIDE * n, fma(splat4(-weight), push, load4(lack, WIDE * n)))
-                    borne = splat4(both * slope[0, 2, k]) * pressed
-                    for c in range(D):
-                        store(T, WIDE * (D * n + c), fma(splat4(skin.normal[s, c]), borne, load4(T, WIDE * (D * n + c))))
+                    w = splat4(both * slope[0, 2, k])
+                    store(sums.diagonal, WIDE * n, fma(w, square, load4(sums.diagonal, WIDE * n)))
+                    if pairs:
+                        store(sums.beside, WIDE * n, fma(w, crossed, load4(sums.beside, WIDE * n)))

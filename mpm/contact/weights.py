@@ -12,7 +12,7 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.contact.found import BODY, whole
-from mpm.contact.spots import WIDE, along, gathered, lanes_of, level, new_lines, new_slopes, new_spots, row_of, slopes, spans, sum4, turns, way_to
+from mpm.contact.spots import WIDE, along, gathered, lanes_of, level, new_lines, new_slopes, new_spots, products, row_of, slopes_at, spans, sum4, turns, way_to
 from mpm.contact.sums import forget, recall
 from mpm.jit import kernel
 from mpm.lanes import fma, four, item, load4, put, splat4, store
@@ -54,15 +54,15 @@ def share(space, gradient, walls, skin, sums, seat, problem, i, k, room):
     """W of side k of contact i. rows: W, w, W as it was, and masses, of a row of nodes along the last direction at once."""
     (spots, lines, signs, rows, shift), D, contacts, (n0, n1, n2) = room, directions(space), problem.contacts, spans(space)
     R, M, nothing = WIDE * n0 * n1, n0 * n1 * n2, splat4(0.0)
-    more, home, point, part, mirrored, total = -1, contacts.home[i, k], contacts.point[i, k], 1.0, False, 0.0
+    more, home, point, part, total = -1, contacts.home[i, k], contacts.point[i, k], 1.0, 0.0
+    mirrored = along(space, walls, home, spots)
     if k == 0 and contacts.mates[i] >= 0:
         more, total, point = contacts.mates[i], whole(contacts, skin.area, i), skin.x[contacts.piece[i]]
         part = skin.area[contacts.piece[i]] / total
     for r in range(0, 2 * R, WIDE):
         store(rows, r, nothing)
     while True:  # pieces that act as one see the same nodes
-        mirrored = along(space, walls, home, spots)
-        slopes(space, gradient, spots, lines)
+        slopes_at(space, gradient, home, lines)
         way_to(home, point, shift)
         weight, slope = row_of(n2, lines[0, 2]), row_of(n2, lines[1, 2])
         for j0 in range(n0):
@@ -75,7 +75,7 @@ def share(space, gradient, walls, skin, sums, seat, problem, i, k, room):
         if more < 0:
             break
         home, point, part, more = skin.home[more], skin.x[more], skin.area[more] / total, contacts.after[more]
-    way_to(home, contacts.point[i, k], shift)
+    way_to(contacts.home[i, k], contacts.point[i, k], shift)
     turned, here, square = mirrored or contacts.against[i] >= BODY, (2 * i + k) * M, nothing
     if turned:
         level(space, signs)
@@ -107,11 +107,13 @@ def balance(space, contacts, i, k, here, mirrored, seat, problem, sums, room):
     """From w~ to W; left at w~ where the nodes cannot carry it. `shift` (WIDE,): the way to the contact, as of way_to. y: 1 and a node's way in cells."""
     (spots, _, signs, rows, shift), D, h, (n0, n1, n2), row = room, directions(space), space.h, spans(space), problem.row
     line, R, out, nothing = spots[0], WIDE * n0 * n1, -1.0 if k == 0 else 1.0, splat4(0.0)
-    axis = contacts.against[i] // 2 if contacts.against[i] < BODY and not mirrored else -1  # of a wall
+    against = contacts.against[i]
+    axis = against // 2 if against < BODY and not mirrored else -1  # of a wall
     a, b, y3 = shift[0] / h, shift[1] / h, nothing
     if D > 2:
         y3 = (row_of(n2, line[2, 2]) - splat4(shift[2])) * splat4(1.0 / h)
-    normal, facing = lanes_of(D, contacts.normal[i]), splat4(out * contacts.normal[i, max(axis, 0)])
+    normal = lanes_of(D, contacts.normal[i])
+    crossed, facing = splat4(2.0) * products(normal), splat4(out * contacts.normal[i, max(axis, 0)])
     W, W1, W2, m, m1, m2, m11, m12, m22 = nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing  # sums over rows of y y
     for j0 in range(n0):
         y1 = splat4(line[2, 0, j0] / h - a)
@@ -123,10 +125,10 @@ def balance(space, contacts, i, k, here, mirrored, seat, problem, sums, room):
             else:
                 turned = splat4(out) * normal * load4(signs, WIDE * j0) * load4(signs, WIDE * (n0 + j1))
                 for j2 in range(n2):
-                    n, along_it = seat[row[at + j2]], nothing
-                    for e in range(D):
-                        along_it = fma(splat4(contacts.normal[i, e]), load4(sums.T, WIDE * (D * n + e)), along_it)
-                    borne = sum4(along_it * normal)
+                    n = seat[row[at + j2]]
+                    borne = sum4(load4(sums.diagonal, WIDE * n) * normal * normal)
+                    if against >= BODY:
+                        borne += sum4(load4(sums.beside, WIDE * n) * crossed)
                     if borne > 1e-12 * h ** (D - 1):
                         more = put(more, j2, sum4(turned * load4(signs, WIDE * (2 * n0 + j2)) * load4(sums.lack, WIDE * n)) / borne)
             now, mass = fma(more, load4(rows, R + r), before), gathered(problem.mass, row, at, n2)

@@ -6,7 +6,7 @@ import pytest
 from mpm.basis import inverse_moment
 from mpm.boundary import CONTACT, SLIP, STICK, directions, extents
 from mpm.boundary.walls import held
-from mpm.contact.found import new_contacts
+from mpm.contact.found import BODY, new_contacts
 from mpm.contact.skin import hoop, new_skin
 from mpm.contact.spots import along, new_spots, seen
 from mpm.contact.sums import fall_short, hold_good, make_room, new_sums, pieces_within, recall
@@ -87,6 +87,7 @@ def test_sums_over_particles_and_pieces(name, gradient, basis):
     skin.home[:], skin.owner[:] = x[:C], np.arange(C)
     contacts = new_contacts(C, D, skin.after)
     contacts.body[:], contacts.balanced[:], contacts.home[:, 0] = [0, -1], [1, 0], x[:C]
+    contacts.against[:] = BODY + 1
     number, fields = np.full(SIZE**D, -1), np.zeros(1, int)
 
     sums = make_room(space, walls[None], fields, new_sums(space, 1), contacts, C, number)
@@ -111,4 +112,6 @@ def test_sums_over_particles_and_pieces(name, gradient, basis):
     assert extents(space)[0] == SIZE and directions(space) == D and set(np.flatnonzero(number >= 0)) == marked
     nodes = sorted(marked)
     assert sums.lack[number[nodes], :D] == pytest.approx(r[nodes], abs=1e-12 * np.abs(r).max())
-    assert sums.T[number[nodes], :, :D] == pytest.approx(T[nodes], abs=1e-12 * np.abs(T).max())
+    diagonal, others = np.einsum("ncc->nc", T[nodes]), np.stack([T[nodes, a, b] for a, b in ((1, 2), (0, 2), (0, 1)) if b < D], axis=-1) if D > 1 else None
+    assert sums.diagonal[number[nodes], :D] == pytest.approx(diagonal, abs=1e-12 * np.abs(T).max())
+    assert others is None or sums.beside[number[nodes]][:, 3 - others.shape[1] : 3] == pytest.approx(others, abs=1e-12 * np.abs(T).max())
