@@ -110,7 +110,7 @@ class WallHeat(Exchange):
 
     rates, meets = ("beta",), "temperature"
 
-    beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at its temperature; at 0 the body's surroundings act")
+    beta: Beta = doc(description="heat-transfer coefficient of the contact; .inf holds the surface at its temperature; at 0 it insulates what touches it")
     temperature: Programme = doc(description="temperature of the wall; may change over time")
 
 

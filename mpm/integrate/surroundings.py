@@ -17,7 +17,7 @@ import numpy as np
 
 from mpm.boundary import CONTACT, extents
 from mpm.heat.programmes import at, changes, during, turns
-from mpm.state import PAD, Exposure, Radiation
+from mpm.state import PAD, Radiation
 
 REACH, FACING = 0.5, 0.5  # cells; cosine
 NEAR = 4.0  # cells from a particle to its pieces, at most
@@ -49,6 +49,7 @@ class HotWall:
     side: int
     beta: Any
     temperature: Any
+    acts: Any = 1.0  # 0 before `from` and after `until`: then the body's surroundings act
     touched: Any = None  # (S,) time in touch since the last heat step [s]; None: a mirror
     tool: str = ""  # its name; nothing of a wall
     number: int = 0  # among all hot walls and tools of the scene (mpm.simulation.Scene.hot)
@@ -75,7 +76,7 @@ class Surroundings:
     @property
     def turns(self) -> set[float]:
         """Times at which something jumps [s]."""
-        every = [one for act in self.acts for one in act.over_time] + [one for wall in self.walls for one in (wall.beta, wall.temperature)]
+        every = [one for act in self.acts for one in act.over_time] + [one for wall in self.walls for one in (wall.beta, wall.temperature, wall.acts)]
         return {when for one in every for when in turns(one)}
 
     def write(self, space, body, start: float, dt: float, covered: np.ndarray | None = None) -> None:
@@ -114,9 +115,8 @@ class Surroundings:
         self.betas, self.ends = np.zeros((len(self.walls), len(surface.beta))), np.zeros((len(self.walls), 2))
         for number, wall in enumerate(self.walls):
             self.touch(number, wall, space, body, start, dt)
-        if isinstance(surface.exposure, Exposure):
-            for array in surface.exposure:
-                array[:] = 0.0
+        for array in surface.exposure if self.walls else ():
+            array[:] = 0.0
 
     def given(self, surface, count: int) -> np.ndarray:
         """Heat that each of the scene's `count` hot walls and tools gave in the heat step that is over (count,) [J]."""
@@ -152,14 +152,14 @@ class Surroundings:
         return found
 
     def touch(self, number: int, wall: HotWall, space, body, start: float, dt: float) -> None:
-        """The pieces at a hot wall exchange with it alone."""
+        """The pieces at a hot wall exchange with it alone, and with nothing where its beta is 0."""
+        if during(wall.acts, start) == 0.0:
+            return
         if wall.touched is not None:
             self.share(number, wall, body.surface, start, dt)
             return
         surface, here = body.surface, facing(space, body, wall.axis, wall.side, REACH)
         first, last, beta = self.met(wall, start, dt)
-        if beta == 0.0:
-            return
         surface.beta[here], surface.outside[here], surface.drift[here], surface.flux[here] = beta, first, last - first, 0.0
         if isinstance(surface.radiation, Radiation):
             surface.radiation.emissivity[here] = 0.0
@@ -172,8 +172,6 @@ class Surroundings:
             return
         part = np.minimum(wall.touched[s] / dt, 1.0)
         first, last, beta = self.met(wall, start, dt)
-        if beta == 0.0:
-            return
         beta, free = part * beta, 1.0 - part
         both = free * surface.beta[s] + beta
         weight = beta / np.maximum(both, 1e-300)

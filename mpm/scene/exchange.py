@@ -74,11 +74,10 @@ def hot_walls(experiment, sides) -> list[HotWall]:
     found, names = [], heated(experiment)
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
-        if heat is not None and most(programme(heat.beta)) > 0:
-            wall = experiment.walls[side]
-            beta = spell(programme(heat.beta), getattr(wall, "from"), wall.until)
-            found.append(HotWall(number // 2, number % 2, beta, programme(heat.temperature), number=names.index(side)))
-    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None and most(programme(tool.heat.beta)) > 0]
+        if heat is not None:
+            acts = spell(1.0, getattr(experiment.walls[side], "from"), experiment.walls[side].until)
+            found.append(HotWall(number // 2, number % 2, programme(heat.beta), programme(heat.temperature), acts, number=names.index(side)))
+    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None]
     return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name, number=names.index(name)) for name, heat in hot]
 
 
@@ -131,7 +130,7 @@ def exchanging_surface(experiment, name: str, cut, zero: float, sides, thermal, 
     entries = [entry for entry in experiment.surfaces if entry.of == name]
     acts = [act for entry in entries for act in acts_of(entry, np.flatnonzero(outline.faces(cut, entry.side, plane) & faces))]
     acts = [act for act in acts if len(act.pieces)]
-    walls = hot_walls(experiment, sides)
+    walls = [wall for wall in hot_walls(experiment, sides) if acts or most(wall.beta) > 0]
     if not acts and not walls:
         kept = np.arange(len(cut.owner)) if meets else np.zeros(0, np.int64)
         return pieces_of(cut, kept, thermal.theta.dtype, NoRadiation()) if meets else NoExchange(), None, kept

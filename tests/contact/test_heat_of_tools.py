@@ -159,3 +159,15 @@ def test_a_beta_of_nothing_gives_nothing():
     """As one point of a sweep over beta: told, and 0."""
     s = ran(pressed(beta=0.0) | {"output": {"every": 0.05, "observables": ["heat.left", "heat.press"]}})
     assert np.all(s["heat_left"] == 0) and s["heat_press"] == pytest.approx(s["heat_exchanged"], abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["contact", "slip"])
+def test_a_beta_of_nothing_insulates_as_nearly_nothing_does(kind):
+    """Air cools all sides; what lies on the wall sees none of it, but after `until`."""
+    taken = []
+    for beta, until in ((0.0, None), (1e-9, None), (0.0, 0.05)):
+        scene = pressed(beta=beta, temperature=400.0, end=0.1, surfaces=[{"of": "bar", "convection": {"beta": 5.0, "outside": 250}}]) | {"tools": {}}
+        scene["walls"] = {"left": {kind: scene["walls"]["left"]["contact"] | ({"until": until} if until else {})}}
+        taken.append(ran(scene)["heat_exchanged"])
+    assert taken[0] == pytest.approx(taken[1], abs=1e-6) and taken[0][-1] < -10
+    assert taken[2][:3] == pytest.approx(taken[0][:3], rel=0.02) and taken[2][-1] < 1.2 * taken[0][-1]
