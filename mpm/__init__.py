@@ -27,7 +27,7 @@ _PLACES = {
     "estimate": "mpm.costs",
     "run_point": "mpm.runner",
     "Outcome": "mpm.outcome",
-    "Run": "mpm.state",
+    "Run": "mpm.outcome",
 }
 _ROOMS = ("materials", "config", "records", "rigid", "plots", "verification")
 

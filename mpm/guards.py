@@ -86,9 +86,12 @@ class Guards:
         return after
 
     def share(self, scene) -> None:
-        """Bodies that pass heat to each other have one range of data."""
+        """Bodies that pass heat to each other have one range of data: what one of them meets by now, another may feel."""
         if scene.meeting is None or not scene.meeting.warms:
             return
+        for body, data in zip(scene.bodies, self.data, strict=True):
+            if isinstance(body.thermal, Thermal) and not data.heats:
+                data.meet(body)
         for b, c in np.argwhere(scene.meeting.passing):
             one, other = self.data[b], self.data[c]
             one.low, one.high = min(one.low, other.low), max(one.high, other.high)
@@ -106,6 +109,7 @@ class Guards:
 
     def whole(self, scene, clock) -> Outcome:
         """Before a record, and where something is wrong."""
+        self.share(scene)
         for b, (name, body, data) in enumerate(zip(scene.names, scene.bodies, self.data, strict=True)):
             wrong = unsound(scene.space, body) or (data.judge(body) if isinstance(body.thermal, Thermal) else None)
             if wrong is not None:

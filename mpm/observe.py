@@ -49,6 +49,7 @@ class Watch:
     asked: dict[str, tuple[str, str, str]] = field(default_factory=dict)  # dataset name -> (field, probe, part) beside temperatures
     of: dict[str, tuple[str, int]] = field(default_factory=dict)  # dataset name -> (series, number of the one body that it is told of)
     bites: dict[str, tuple[str, str]] = field(default_factory=dict)  # dataset name -> (what, tool): mpm.contact.texture
+    unmet: dict[str, float] = field(default_factory=dict)  # dataset name -> 0, of what walls and bodies do to each other that never meet
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)  # (dataset name, probe, kelvin)
     snapshots: np.ndarray = field(default_factory=lambda: np.zeros(0))  # times [s]; a run comes to them as to its output times
     grid: tuple[str, ...] = ()
@@ -132,7 +133,7 @@ class Recorder:
     def record(self, scene, clock) -> None:
         """One line of every series; a frame where one is due."""
         self.times.append(clock.time)
-        wrong = self.errors.series(scene.bodies[0], clock.time) if self.errors else {}
+        wrong = (self.errors.series(scene.bodies[0], clock.time) if self.errors else {}) | scene.watch.unmet
         met = scene.meeting.series(axis_names(scene.space), clock.time - clock.lag, clock.time) if scene.meeting is not None else ()
         for name, value in (*self.mechanical(scene, clock), *self.thermal(scene, clock), *self.at_probes(scene), *self.of_bodies(scene), *wrong.items(), *met):
             self.series.setdefault(name, [0.0] * (len(self.times) - 1)).append(float(value))  # what meets something late met nothing before
@@ -193,9 +194,8 @@ class Recorder:
         yield "dissipation_total", clock.dissipated
         work = clock.worked + (scene.meeting.work if scene.meeting is not None else 0.0)
         yield "work_loads", work
-        rubbed = scene.meeting.friction if scene.meeting is not None else 0.0
-        if scene.meeting is not None:
-            yield "dissipation_friction", rubbed
+        rubbed = 0.0 if scene.meeting is None else scene.meeting.friction
+        yield from () if scene.meeting is None else (("dissipation_friction", rubbed),)
         yield from scene.inflow.series(bool(self.warm)) if scene.inflow is not None else ()
         given = getattr(scene.inflow, "energy", 0.0) + work + clock.swelled + clock.softened
         self.gone = given - clock.dissipated - rubbed - (total - self.series.get("energy_total", [total])[0])

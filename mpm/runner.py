@@ -170,16 +170,17 @@ def complete(experiment, run: Run) -> Run:
     from mpm.records.variables import dataset_name, probed
 
     output, shots, have = experiment.output, experiment.output.snapshots, {*run.series, *run.finals}
-    wanted = [(f"observables.{name}", dataset_name(name) in have) for name in output.observables]
+    wanted = [(("observables", k), name, dataset_name(name) in have) for k, name in enumerate(output.observables)]
     more = {found[1] for found in map(probed, output.observables) if found is not None}
-    wanted += [(f"probes.{name}", name in more or f"temperature_{name}" in have) for name in output.probes]
+    wanted += [(("probes", name), f"probes.{name}", name in more or f"temperature_{name}" in have) for name in output.probes]
     grid, particles = run.frames[0][1:] if run.frames is not None else (run.grid, run.particles[0] if run.particles else {})
     for kind, fields in (("grid", grid), ("particles", particles)) if shots is not None else ():
         stems = {*fields, *(name.rpartition("_")[0] for name in fields)}  # a vector has a field a direction
-        wanted += [(f"snapshots.{kind}.{name}", name in stems) for name in getattr(shots, kind)]
-    lacking = [name for name, there in wanted if not there]
+        wanted += [(("snapshots", kind, k), f"snapshots.{kind}.{name}", name in stems) for k, name in enumerate(getattr(shots, kind))]
+    lacking = [(at, name) for at, name, there in wanted if not there]
     if run.outcome.ok and lacking:
-        raise SceneError(("output",), f"{', '.join(lacking)}: asked for, and this model does not tell {'it' if len(lacking) == 1 else 'them'}")
+        said = f"{', '.join(name for _, name in lacking)}: asked for, and this model does not tell {'it' if len(lacking) == 1 else 'them'}"
+        raise SceneError(("output", *lacking[0][0]), said)
     return run
 
 

@@ -73,10 +73,10 @@ def test_what_is_left_out_fails_by_name(core, monkeypatch):
     output = {"observables": ["mass.total", "temperature.mean"], "probes": {"p": probe}, "snapshots": {"every": 0.1, "grid": ["velocity"], "particles": ["J"]}}
     experiment = accepted(data, output)
     run = Run(Outcome("completed"), [0.0], {"temperature_mean": [1.0]}, {})
-    lacking = ["observables.mass.total", "probes.p", "snapshots.grid.velocity", "snapshots.particles.J"]
-    with pytest.raises(SceneError, match=re.escape("output: " + ", ".join(lacking) + ": ")):
+    lacking = ["mass.total", "probes.p", "snapshots.grid.velocity", "snapshots.particles.J"]
+    with pytest.raises(SceneError, match=re.escape("output.observables.0: " + ", ".join(lacking) + ": ")):
         complete(experiment, run)
     assert complete(experiment, Run(Outcome("budget"), [0.0], {}, {})).outcome.kind == "budget"
     monkeypatch.setattr("mpm.runner.run_point", lambda *_, **__: complete(experiment, run))
     record = compute("id", lambda: experiment, "mpm.runner", None)
-    assert record.status == FAILED and record.error.startswith("failed: output: observables.mass.total, ")
+    assert record.status == FAILED and record.error.startswith("failed: output.observables.0: mass.total, ")

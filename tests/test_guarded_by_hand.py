@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import mpm
 from mpm import guards
 from mpm.boundary import extents
 from mpm.guards import NOTICEABLE, ROUNDED, ROUNDING, Data, Guards, outgrown, rounded
@@ -114,3 +115,20 @@ def test_a_flux_bounds_temperatures_on_its_other_side(core, q):
         body.thermal.theta[:2] = q * 100.0, q * beyond
         assert (data.judge(body) is None) == fine
     assert data.over == pytest.approx(0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize("first", ["cold", "warm"])
+def test_a_body_may_feel_what_its_neighbour_has_just_met(first):
+    """The neighbour met air of 250 K in the heat step that is over. Whichever is judged first: it was the order in the config that decided."""
+    heat = {"density": 1.0, "elastic": {"hencky": {"E": 1.0, "nu": 0.0}}, "heat": {"fourier": {"kappa": 1.0, "alpha": 1.0}}}
+    places = {"cold": (0.5, 1.0), "warm": (0.0, 0.5)}
+    names = sorted(places, key=lambda name: name != first)
+    found = build(mpm.load({
+        "grid": {"dimension": 1, "size": [1.0], "cell": 0.125}, "materials": {"m": heat}, "time": {"end": 1.0}, "output": {"every": 1.0},
+        "bodies": {name: {"shape": {"box": {"lower": [low], "upper": [high]}}, "temperature": 300.0, "material": "m"}
+                   for name in names for low, high in [places[name]]},
+        "surfaces": [{"of": "cold", "side": "right", "convection": {"beta": 1.0, "outside": 250.0}}],
+    }))  # fmt: skip
+    held, b = Guards(found), names.index("warm")
+    found.bodies[b].thermal.theta[0] -= 1.0
+    assert found.meeting.warms and held.whole(found, Clock(found)).ok

@@ -13,6 +13,26 @@ from mpm.config.quantities import Angle, AngularVelocity, Coordinate, Length, Pe
 Point = tuple[Coordinate, ...]
 
 
+def turn(a: Point, b: Point, c: Point) -> float:
+    """Above 0 where c lies to the left of the way from a to b, below 0 to the right."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def crossing(edges: list[tuple[Point, Point]]) -> tuple[int, int] | None:
+    """Numbers of the first two edges that cross, each with its ends on both sides of the other."""
+    begins = sorted((min(a[0], b[0]), k) for k, (a, b) in enumerate(edges))
+    near: list[int] = []
+    for low, k in begins:
+        a, b = edges[k]
+        near = [m for m in near if max(edges[m][0][0], edges[m][1][0]) > low]
+        for m in near:
+            c, d = edges[m]
+            if turn(a, b, c) * turn(a, b, d) < 0 and turn(c, d, a) * turn(c, d, b) < 0:
+                return min(k, m), max(k, m)
+        near.append(k)
+    return None
+
+
 class Box(Kind):
     """Interval, rectangle or block between two corners; in two dimensions it may be turned about its centre."""
 
@@ -68,6 +88,23 @@ class Polygon(Kind):
 
     kind: ClassVar[str] = "polygon"
     vertices: tuple[Point, ...] = doc(min_length=3, description="corners in order; the last is joined to the first")
+
+    @model_validator(mode="after")
+    def simple(self) -> "Polygon":
+        """It has an inside: no corner twice in a row, no edge across another."""
+        if any(len(corner) != 2 for corner in self.vertices):
+            return self  # shapes_fit.py tells
+        edges = list(zip(self.vertices, (*self.vertices[1:], self.vertices[0]), strict=True))
+        for index, (one, other) in enumerate(edges):
+            if one == other:
+                raise problem("polygon", "the same corner twice in a row", "each corner once; the last is joined to the first", at=("vertices", index))
+        if (found := crossing(edges)) is not None:
+            first, second = found
+            said = f"edge {second + 1} crosses edge {first + 1}, so it has no inside"
+            raise problem("polygon", said, "corners in their order round the outline", at=("vertices", second))
+        if all(turn(*edges[0], corner) == 0 for corner in self.vertices):
+            raise problem("polygon", "its corners lie on one line", "at least three that do not", at=("vertices",))
+        return self
 
 
 class Mesh(Kind):

@@ -142,6 +142,8 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
             "torque.<wall, tool or pair>_<direction>",
             "area.<wall, tool or pair>",
             "heat.<hot wall or tool, or pair>",
+            "travel.<tool>_<direction>",
+            "hardness.<tool>, cohesiveness.<tool>, springiness.<tool>",
         ]
         yield Finding(path, "unknown observable", allowed, near(name, OBSERVABLES), given=name)
         return
@@ -166,12 +168,10 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
     elif one is not None and one[0].startswith(("temperature", "heat")) and experiment.materials[experiment.bodies[one[1]].material].heat is None:
         yield Finding(path, f"{one[1]} has no heat", f"a heat section in materials.{experiment.bodies[one[1]].material}", given=name)
     elif not fits(name, experiment.grid.dimension):
-        yield Finding(
-            path,
-            f"there is no such direction in dimension {experiment.grid.dimension}",
-            [word for word in OBSERVABLES if fits(word, experiment.grid.dimension)],
-            given=name,
-        )
+        touched = met(name)
+        words = [f"{touched[0]}.{touched[1]}_{axis}" for axis in "xyzr"] if touched else OBSERVABLES
+        allowed = [word for word in words if fits(word, experiment.grid.dimension)] or "another observable"
+        yield Finding(path, f"there is no such direction in dimension {experiment.grid.dimension}", allowed, given=name)
     family = name.split(".", maxsplit=1)[0]
     if family in ("temperature", "heat", "time_to", "area") and not hot and not (family == "area" and met(name)):
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)

@@ -212,6 +212,8 @@ def surface_names(experiment: Any) -> Iterator[Finding]:
 def contact(experiment: Any, index: int, item: Any) -> Iterator[Finding]:
     """Two bodies that are there and are not named together elsewhere; of bodies that do not move only heat can be said."""
     known, at = experiment.bodies, ("contacts", index, "between")
+    if len(item.between) != 2:
+        return  # told where it is read
     for place, name in enumerate(item.between):
         if name not in known:
             yield Finding((*at, place), "there is no such body", list(known), near(name, known), given=name)

@@ -8,6 +8,7 @@ from mpm.config.explain import Finding
 from mpm.config.problems import near
 from mpm.config.rules_scene import conducts, heats, moves, plain_names, vector
 from mpm.config.shapes_fit import misfits
+from mpm.config.tools import SHAPES
 
 RESERVED = ("total", "exchanged", "ledger", "inflow", "exchanging")  # heat_total and area_exchanging are other things
 
@@ -22,7 +23,7 @@ def tool(experiment: Any, name: str, item: Any) -> Iterator[Finding]:
     if grid.dimension == 0 or not moves(experiment):
         yield Finding(at, "no body moves, so there is nothing that a tool could push", "an elastic section in a material", on_key=True)
         return
-    for below, said, allowed in misfits(item.shape, grid.dimension, grid.directions):
+    for below, said, allowed in misfits(item.shape, grid.dimension, grid.directions, SHAPES):
         yield Finding((*at, "shape", item.shape.kind, *below), said, allowed)
     if experiment.method.frame == "total":
         yield Finding(at, "the total frame knows no tools yet", "method.frame: updated", on_key=True)
@@ -69,10 +70,14 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
         return
     what, of = found[:2]
     bodies = list(experiment.bodies)
-    pairs = [f"{a}_{b}" for k, a in enumerate(bodies) for b in bodies[k + 1 :]]
+    pairs = {f"{a}_{b}": (a, b) for k, a in enumerate(bodies) for b in bodies[k + 1 :]}
     everything = [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
     hot = [name for things in (experiment.walls, experiment.tools) for name, one in things.items() if getattr(one, "heat", None) is not None]
     known = [*hot, *pairs] if what == "heat" else list(experiment.tools) if what in ("travel", *BITES) else everything
+    cold = [one for one in pairs.get(of, ()) if what == "heat" and experiment.materials[experiment.bodies[one].material].heat is None]
+    if cold:
+        said = f"{cold[0]} has no heat, so none passes between the two"
+        yield Finding(("output", "observables", index), said, f"a heat section in materials.{experiment.bodies[cold[0]].material}", given=name)
     if of in known:
         return
     said = f"there is no {'tool' if what in ('travel', *BITES) else 'wall, tool or pair of bodies'} {of!r}"

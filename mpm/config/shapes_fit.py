@@ -15,10 +15,11 @@ POINTS: dict[Any, tuple] = {Box: ("lower", "upper"), Ball: ("centre",), Cylinder
 ROUND_OFF = 1e-9
 
 
-def misfits(shape: Any, dimension: Any, directions: int) -> Iterator[tuple[tuple, str, Any]]:
-    """(keys below the shape, what is wrong, what is allowed)."""
+def misfits(shape: Any, dimension: Any, directions: int, kinds: tuple = tuple(WHERE)) -> Iterator[tuple[tuple, str, Any]]:
+    """(keys below the shape, what is wrong, what is allowed); `kinds` there may be."""
+    said = f"there is no {shape.kind} in dimension {dimension}"
     if dimension not in WHERE[type(shape)]:
-        yield (), f"there is no {shape.kind} in dimension {dimension}", [kind.kind for kind, where in WHERE.items() if dimension in where]
+        yield (), said, [kind.kind for kind in kinds if dimension in WHERE[kind]]
         return
     for key in POINTS[type(shape)]:
         if getattr(shape, key) is None:

@@ -13,7 +13,8 @@ from mpm.config.quantities import AngularVelocity, Coordinate, Quantity, Velocit
 Moment = Annotated[float, Quantity("s", "time", least=0)]
 Force = Annotated[float, Quantity("N", "force")]
 Mass = Annotated[float, Quantity("kg", "mass", above=0)]
-Shape = one_of("shape of a tool", Box, Ball, Cylinder, Polygon, Mesh)
+SHAPES = (Box, Ball, Cylinder, Polygon, Mesh)
+Shape = one_of("shape of a tool", *SHAPES)
 
 MOMENTS: dict[str, Any] = {  # `from` is no name that a class could write
     "from": (Moment, doc(0.0, description="time of its beginning")),

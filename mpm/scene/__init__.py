@@ -5,6 +5,7 @@ cut         exact quadrature of a shape cut by a grid
 contents    what each cell holds of a shape, and one particle a cell
 
 Further files
+    asked              what a config asks of walls and pairs that never meet
     base               Shape, the role of every shape
     bearing            what bears a body: sides that it lies on, sides that hold it, how far it bends from them
     build              from a validated experiment to a scene of moving bodies

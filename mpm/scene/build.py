@@ -14,6 +14,7 @@ from mpm.config.shapes_fit import home
 from mpm.error import Motion
 from mpm.materials import Hencky
 from mpm.observe import Watch
+from mpm.scene.asked import unmet
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.course import course
@@ -183,7 +184,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
     times, references = output_times(experiment), ()
     if experiment.method.frame == "total":
         bodies, references, surroundings = total_bodies(experiment, zero, space)
-        seams, walls = (None,) * len(names), wall_kinds(experiment)
+        meets, seams, walls = None, (None,) * len(names), wall_kinds(experiment)
         outlines = tuple(outline_near(experiment, name, body.particles.x) for name, body in zip(names, bodies, strict=True))
     else:
         meets = plan_meetings(experiment, SIDES[experiment.grid.dimension])
@@ -193,9 +194,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
         bodies, surroundings, seams, outlines = zip(*made, strict=True)
         walls = meets.walls.min(axis=0)
         refuse_idle(experiment, seams)
-    for body, around in zip(bodies, surroundings, strict=True):
-        if around is not None:
-            around.write(space, body, 0.0, 0.0)
+    never = unmet(experiment, meets, SIDES[experiment.grid.dimension])
     if getattr(exact, "starts", False):
         begin(bodies, exact, zero, space.h)
     if experiment.method.locking is not None:
@@ -206,7 +205,10 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
         bodies = (first, *bodies[1:])
     for body, reference in zip(bodies, references, strict=False):
         begin_nodes(space, body, reference)
-    met = None if references else meeting(meets, space, bodies, surroundings, names, SIDES[experiment.grid.dimension], drive(experiment))
+    met = None if meets is None else meeting(meets, space, bodies, surroundings, names, SIDES[experiment.grid.dimension], drive(experiment))
+    for body, around in zip(bodies, surroundings, strict=True):
+        if around is not None:
+            around.write(space, body, 0.0, 0.0)
     changes = course(experiment, met, walls, bodies, references)
     return Scene(
         space=space,
@@ -237,7 +239,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
         inflow=inflow(experiment, bodies),
         turns=(*moments(experiment), *openings(experiment), *(changes.turns if changes is not None else ()), *kinks(experiment, met)),
         implicit=implicit(experiment, space, bodies, references, met, times),
-        watch=watch(experiment, exact),
+        watch=watch(experiment, exact, never),
     )
 
 
@@ -252,7 +254,7 @@ def begin(bodies, exact, zero: float, h: float) -> None:
             body.thermal.c[:, k] = (exact(x + step, 0.0) - exact(x - step, 0.0)) / (2e-3 * h)
 
 
-def watch(experiment, exact=None) -> Watch:
+def watch(experiment, exact=None, unmet: tuple[str, ...] = ()) -> Watch:
     """What the config asks to record."""
     from mpm.records.variables import BITES, dataset_name, met, probed, single, threshold
 
@@ -264,6 +266,7 @@ def watch(experiment, exact=None) -> Watch:
         homes={name: home(experiment.bodies, x, experiment.grid.size) for name, x in experiment.output.probes.items()},
         asked={dataset_name(name): one for name in experiment.output.observables if (one := probed(name)) is not None},
         of={dataset_name(name): (one[0], list(experiment.bodies).index(one[1])) for name in experiment.output.observables if (one := single(name)) is not None},
+        unmet=dict.fromkeys(unmet, 0.0),
         bites={dataset_name(name): one[:2] for name in experiment.output.observables if (one := met(name)) is not None and one[0] in BITES},
         thresholds=[(name, at.probe, at.kelvin) for name, at in found],
         snapshots=output_times(experiment, snapshots.every) if snapshots else np.zeros(0),

@@ -227,7 +227,7 @@ def refuse_overlap(experiment, names, outlines, boxes) -> None:
             low, high = np.maximum(boxes[b][0], boxes[c][0]), np.minimum(boxes[b][1], boxes[c][1])
             if np.any(high - low <= OVERLAP * h):
                 continue
-            counts = np.minimum(np.ceil((high - low) / (0.1 * h)).astype(int) + 1, 60 if len(low) > 2 else 400)
+            counts = np.clip(np.ceil((high - low) / (0.1 * h)).astype(int) + 1, 3, 60 if len(low) > 2 else 400)  # 3: the middle of a thin one too
             axes = [np.linspace(p, q, n) for p, q, n in zip(low, high, counts, strict=True)]
             points = np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=-1)
             depth = np.minimum(-outlines[b].distance(points), -outlines[c].distance(points))

@@ -119,8 +119,8 @@ def matter(experiment) -> list[dict[str, float]]:
 
 
 def of_bodies(experiment, solved, masses, joints) -> dict[str, np.ndarray]:
-    """Series of one body that are asked for, and the heat that the first body of each pair that touches has taken from the second."""
-    from mpm.records.variables import dataset_name, single
+    """Series of one body that are asked for, and the heat that the first body of each pair that touches has taken from the second; none of asked ones apart."""
+    from mpm.records.variables import dataset_name, met, single
 
     names, count, found = list(experiment.bodies), len(solved.times), {}
     for told in experiment.output.observables:
@@ -129,7 +129,8 @@ def of_bodies(experiment, solved, masses, joints) -> dict[str, np.ndarray]:
             constant = masses[b].get(one[0], np.nan) if masses else np.nan
             found[dataset_name(told)] = solved.of[b].get(own, np.full(count, constant))
     flows = {(joint.first, joint.second): np.zeros(count) for joint in joints} | {pair: -flow for pair, flow in solved.passed.items()}
-    return found | {f"heat_{names[a]}_{names[b]}": flow for (a, b), flow in flows.items()}
+    apart = {dataset_name(told): np.zeros(count) for told in experiment.output.observables if met(told) is not None}
+    return found | apart | {f"heat_{names[a]}_{names[b]}": flow for (a, b), flow in flows.items()}
 
 
 class Looks:
