@@ -170,8 +170,8 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
     elif not fits(name, experiment.grid.dimension):
         touched = met(name)
         words = [f"{touched[0]}.{touched[1]}_{axis}" for axis in "xyzr"] if touched else OBSERVABLES
-        allowed = [word for word in words if fits(word, experiment.grid.dimension)] or "another observable"
-        yield Finding(path, f"there is no such direction in dimension {experiment.grid.dimension}", allowed, given=name)
+        fitting = [word for word in words if fits(word, experiment.grid.dimension)]
+        yield Finding(path, f"there is no such direction in dimension {experiment.grid.dimension}", fitting or "another observable", given=name)
     family = name.split(".", maxsplit=1)[0]
     if family in ("temperature", "heat", "time_to", "area") and not hot and not (family == "area" and met(name)):
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
