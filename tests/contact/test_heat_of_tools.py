@@ -13,6 +13,7 @@ from mpm.simulation import simulate
 
 pytestmark = pytest.mark.plain
 RAMP = {"table": {"time": [0, 0.04, 0.04, 1], "value": [400, 380, 340, 360]}}
+HEATS = ("explicit", "stabilised", {"implicit": {"order": 1}}, {"implicit": {"order": 2}})
 SWELLS = {"table": {"temperature": [250, 350, 450], "value": [0.8, 1.0, 1.4]}}
 
 
@@ -41,8 +42,13 @@ def given(series, *names) -> np.ndarray:
     return sum(series[f"heat_{name}"] for name in names)
 
 
-@pytest.mark.parametrize("alpha", [1.0, SWELLS])
-@pytest.mark.parametrize("heat", ["explicit", "stabilised", {"implicit": {"order": 1}}, {"implicit": {"order": 2}}])
+@pytest.mark.parametrize(
+    ("heat", "alpha"),
+    [
+        *((heat, 1.0) for heat in HEATS),
+        *(pytest.param(heat, SWELLS, marks=() if heat in ("stabilised", HEATS[-1]) else pytest.mark.wide) for heat in HEATS),
+    ],
+)
 def test_walls_and_tools_give_what_a_body_takes(heat, alpha):
     """Over a ramp and a jump of the wall's temperature, to round-off, whatever advances the temperatures."""
     s = ran(pressed(alpha=alpha, method={"heat": heat}))
@@ -50,15 +56,16 @@ def test_walls_and_tools_give_what_a_body_takes(heat, alpha):
     assert given(s, "left", "press") == pytest.approx(s["heat_exchanged"], abs=1e-12 * np.abs(s["heat_exchanged"]).max())
 
 
-@pytest.mark.parametrize("kind", ["contact", "slip"])
-def test_resistances_in_series(kind):
-    """At the end what comes in goes out, to round-off: q = (T_1 - T_2)/(1/beta_1 + L/kappa + 1/beta_2), of order 1: 1.1 % short with 8 cells."""
-    scene = pressed(temperature=400.0, end=2.5, method={"heat": {"implicit": {"order": 2}}, "heat_step": 0.02})
+@pytest.mark.parametrize(("kind", "cells", "off"), [("contact", 8, 0.016), ("slip", 8, 0.016), pytest.param("contact", 32, 0.004, marks=pytest.mark.slow)])
+def test_resistances_in_series(kind, cells, off):
+    """At the end what comes in goes out, q = (T_1 - T_2)/(1/beta_1 + L/kappa + 1/beta_2), 1.5 and 0.37 % short: of order 1."""
+    scene = pressed(temperature=400.0, end=2.5, method={"heat": {"implicit": {"order": 2}}, "heat_step": 0.25})
+    scene["grid"]["cell"] = 0.5 / cells
     scene["walls"]["left"] = {kind: scene["walls"]["left"]["contact"]}
     s = ran(scene)
     q = (400 - 320) / (1 / 20 + 0.5 + 1 / 5)
     came, went = ((s[f"heat_{name}"][-1] - s[f"heat_{name}"][-2]) / 0.5 for name in ("left", "press"))
-    assert came == pytest.approx(q, rel=0.015) and went == pytest.approx(-came, rel=1e-9)
+    assert came == pytest.approx(q, rel=off) and went == pytest.approx(-came, rel=1e-6)
 
 
 def test_a_lumped_body_between_wall_tool_and_air():
@@ -127,10 +134,10 @@ def test_slabs_add_up(monkeypatch):
     """Threads' shares of a body: the same bits for any number of them."""
     monkeypatch.setattr(sorting, "SHARED", 1)
     monkeypatch.setattr(sorting, "FULL", 1)
-    scene = pressed(temperature=400.0, end=0.002, method={"heat": "stabilised", "heat_step": 1e-3})
+    scene = pressed(temperature=400.0, end=0.001, method={"heat": "stabilised", "heat_step": 5e-4})
     scene["grid"] = {"dimension": 2, "size": [3.0, 1.0], "cell": 0.125}
-    scene["bodies"]["bar"]["shape"]["box"] = {"lower": [0.25, 0.0], "upper": [2.25, 0.25]}
-    scene["tools"]["press"]["shape"]["box"] = {"lower": [0.125, 0.25], "upper": [2.5, 0.625]}
+    scene["bodies"]["bar"]["shape"]["box"] = {"lower": [0.25, 0.0], "upper": [1.75, 0.25]}
+    scene["tools"]["press"]["shape"]["box"] = {"lower": [0.125, 0.25], "upper": [2.0, 0.625]}
     scene["walls"] = {"bottom": scene["walls"].pop("left")}
     looked = []
     monkeypatch.setattr(warming, "shared", lambda scene, b: looked.append(heat_threaded.shared(scene, b)) or looked[-1])
@@ -161,7 +168,7 @@ def test_a_beta_of_nothing_gives_nothing():
     assert np.all(s["heat_left"] == 0) and s["heat_press"] == pytest.approx(s["heat_exchanged"], abs=1e-12)
 
 
-@pytest.mark.parametrize("kind", ["contact", "slip"])
+@pytest.mark.parametrize("kind", ["contact", pytest.param("slip", marks=pytest.mark.wide)])
 def test_a_beta_of_nothing_insulates_as_nearly_nothing_does(kind):
     """Air cools all sides; what lies on the wall sees none of it, but after `until`."""
     taken = []
