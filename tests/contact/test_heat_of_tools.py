@@ -56,16 +56,27 @@ def test_walls_and_tools_give_what_a_body_takes(heat, alpha):
     assert given(s, "left", "press") == pytest.approx(s["heat_exchanged"], abs=1e-12 * np.abs(s["heat_exchanged"]).max())
 
 
-@pytest.mark.parametrize(("kind", "cells", "off"), [("contact", 8, 0.016), ("slip", 8, 0.016), pytest.param("contact", 32, 0.004, marks=pytest.mark.slow)])
-def test_resistances_in_series(kind, cells, off):
-    """At the end what comes in goes out, q = (T_1 - T_2)/(1/beta_1 + L/kappa + 1/beta_2), 1.5 and 0.37 % short: of order 1."""
-    scene = pressed(temperature=400.0, end=2.5, method={"heat": {"implicit": {"order": 2}}, "heat_step": 0.25})
+LONG = {"heat": {"implicit": {"order": 2}}, "heat_step": 0.25}
+
+
+@pytest.mark.parametrize(
+    ("kind", "cells", "method", "off"),
+    [
+        ("contact", 8, LONG, 0.016),
+        ("slip", 8, LONG, 0.016),
+        pytest.param("contact", 32, LONG, 0.004, marks=pytest.mark.slow),
+        pytest.param("contact", 8, {}, 0.0012, marks=pytest.mark.slow),
+    ],
+)
+def test_resistances_in_series(kind, cells, method, off):
+    """At the end what comes in goes out: q = (T_1 - T_2)/(1/beta_1 + L/kappa + 1/beta_2). Long heat steps are 1.5 and 0.39 % short, those of its own 0.11 %."""
+    scene = pressed(temperature=400.0, end=1.5, method=method)
     scene["grid"]["cell"] = 0.5 / cells
     scene["walls"]["left"] = {kind: scene["walls"]["left"]["contact"]}
     s = ran(scene)
     q = (400 - 320) / (1 / 20 + 0.5 + 1 / 5)
-    came, went = ((s[f"heat_{name}"][-1] - s[f"heat_{name}"][-2]) / 0.5 for name in ("left", "press"))
-    assert came == pytest.approx(q, rel=off) and went == pytest.approx(-came, rel=1e-6)
+    came, went = ((s[f"heat_{name}"][-1] - s[f"heat_{name}"][-2]) / 0.3 for name in ("left", "press"))
+    assert came == pytest.approx(q, rel=off) and went == pytest.approx(-came, rel=1e-4)
 
 
 def test_a_lumped_body_between_wall_tool_and_air():
