@@ -6,7 +6,7 @@ springiness    way of the second bite, from touch to its end, over that of the f
 A bite is the time from touch (force above TOUCH of the largest) to the end of the way down. Force and way are told at the output times, force as the mean since
 the one before, so that sums are impulses.
 Good values    fifty outputs a bite.
-Fails when     the press does not come free between its bites, or bites once: NaN.
+Fails when     the press does not come free between its bites, or bites once: NaN, but for the hardness; it touches nothing: NaN.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ def bites(force: np.ndarray, way: np.ndarray) -> list[tuple[float, float, float]
     acting = touched & down
     begins = np.flatnonzero(acting & ~np.concatenate([[False], acting[:-1]]))
     free = True
-    for first, last in zip(begins, [*begins[1:], len(way)], strict=True):
+    for first, last in zip(begins, [*begins, len(way)][1:], strict=True):
         between = slice(found[-1][3] if found else 0, first)
         free = not found or not touched[between].all()
         end = first + int(np.argmin(acting[first:last])) if not acting[first:last].all() else last
@@ -35,9 +35,6 @@ def bites(force: np.ndarray, way: np.ndarray) -> list[tuple[float, float, float]
 
 
 def texture(force: np.ndarray, way: np.ndarray) -> dict[str, float]:
-    """hardness [N], cohesiveness and springiness; NaN where there are not two bites."""
-    found = bites(force, way)
-    if len(found) < 2:
-        return dict.fromkeys(("hardness", "cohesiveness", "springiness"), np.nan)
-    (hard, work, length), (_, again, less) = found[:2]
+    """hardness [N], cohesiveness and springiness; NaN where there is no bite, or no second one."""
+    (hard, work, length), (_, again, less) = [*bites(force, way), (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan)][:2]
     return {"hardness": hard, "cohesiveness": again / work, "springiness": less / length}

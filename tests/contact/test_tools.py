@@ -171,14 +171,16 @@ def test_texture_of_two_bites(plain):
 
 
 def test_texture_by_hand():
-    """Two triangles, the second half as strong, from where the first left a dent of a fifth; a halt is no second bite; one bite tells nothing."""
+    """Two triangles, the second half as strong, from where the first left a dent of a fifth; a halt is no second bite; one bite tells its hardness alone, none tells nothing."""
     way = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.99, -0.2, 120), np.linspace(-0.19, 1, 120)])
     force = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.97, 0, 20), np.zeros(100), np.zeros(39), np.linspace(0, 0.5, 81)])
     found = texture(force, way)
     assert found["hardness"] == 1.0 and found["cohesiveness"] == pytest.approx(0.8 * 0.5, rel=0.02) and found["springiness"] == pytest.approx(0.8, rel=0.02)
     halted, stopped = np.insert(way, 50, [way[49]] * 9), np.insert(force, 50, [force[49]] * 9)
     assert texture(stopped, halted) == pytest.approx(found, rel=1e-12)
-    assert all(np.isnan(value) for value in texture(force[:150], way[:150]).values())
+    once = texture(force[:150], way[:150])
+    assert once.pop("hardness") == found["hardness"] and all(np.isnan(value) for value in once.values())
+    assert all(np.isnan(value) for value in texture(np.zeros_like(force), way).values())  # it ended the run as failed
 
 
 def test_a_resolved_config_with_tools_is_read_back():
