@@ -171,7 +171,7 @@ def test_texture_of_two_bites(plain):
 
 
 def test_texture_by_hand():
-    """Two triangles, the second half as strong, from where the first left a dent of a fifth; a halt is no second bite; one bite tells its hardness alone, none tells nothing."""
+    """Two triangles, the second half as strong, from where the first left a dent of a fifth; a halt is no second bite; one tells its hardness alone."""
     way = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.99, -0.2, 120), np.linspace(-0.19, 1, 120)])
     force = np.concatenate([np.linspace(0, 1, 101), np.linspace(0.97, 0, 20), np.zeros(100), np.zeros(39), np.linspace(0, 0.5, 81)])
     found = texture(force, way)
