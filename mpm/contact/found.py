@@ -6,7 +6,7 @@ import numpy as np
 
 from mpm.boundary import directions
 from mpm.contact.skin import POINT, hoop
-from mpm.jit import kernel
+from mpm.jit import kernel, role
 
 NEAR, REACH = 0.6, 1.25  # cells: gaps that a step can close; how far faces of another body are looked for
 CLEAR = 1e-6  # cells: positions are rounded
@@ -34,6 +34,12 @@ class Contacts(NamedTuple):
     over: np.ndarray  # (C,) first node that a level piece sees, to find others over the same nodes; -1
     mates: np.ndarray  # (C,) a piece that acts with `piece` as one, -1; the next one:
     after: np.ndarray  # (P,) of every piece, of the skin
+
+
+@role(inline=True)
+def others(which):
+    """Whether there are any: other bodies (pairs.py), tools (tools.py). Else a body meets walls alone."""
+    raise TypeError(f"nothing to meet in {type(which).__name__}")
 
 
 @kernel

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm.boundary import directions
-from mpm.contact.found import BODY, CORNER, FACING, REACH, around, put
+from mpm.contact.found import BODY, CORNER, FACING, REACH, around, others, put
 from mpm.contact.skin import POINT
 from mpm.jit import kernel, role
 
@@ -24,6 +24,16 @@ class Pairs(NamedTuple):
 
 class NoPairs(NamedTuple):
     """One body."""
+
+
+@others.register(NoPairs)
+def others_no_pairs(which):
+    return False
+
+
+@others.register(Pairs)
+def others_pairs(which):
+    return True
 
 
 @role

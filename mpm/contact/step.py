@@ -11,7 +11,7 @@ from mpm.boundary import directions, extents
 from mpm.boundary.blocks import mark_box, thin
 from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all, list_near
-from mpm.contact.found import BODY, NEAR, STRAY, whole
+from mpm.contact.found import BODY, NEAR, STRAY, others, whole
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
 from mpm.contact.solve import apart, pose, press, settle, speed
@@ -151,7 +151,7 @@ def seek(space, bodies, touching, skin, sums, travel):
         lay_skins(space, bodies, skin, skin.near, skin.starts)
     else:
         lay_skins(space, bodies, skin, skin.every, skin.first)
-        list_near(space, bodies, skin, touching.stops, touching.pushed.shape[1] == BODY + 1)
+        list_near(space, bodies, skin, touching.stops, not (others(touching.pairs) or others(touching.tools)))
     found, count = find_all(space, bodies, skin, touching.stops, touching.pairs, touching.tools, touching.room, NEAR, touching.number)
     if count == 0:
         touching.warm[:], sums.moved[0] = 0.0, np.inf

@@ -13,7 +13,7 @@ from numba import literal_unroll
 
 from mpm.boundary import directions
 from mpm.contact.distance import signed
-from mpm.contact.found import BODY, around, faces, put
+from mpm.contact.found import BODY, around, faces, others, put
 from mpm.jit import kernel, role
 from mpm.state import NoExchange, Surface
 
@@ -45,6 +45,16 @@ class Tools(NamedTuple):
     path: np.ndarray  # (steps + 1, T, D) of the centre over a block
     turns: np.ndarray  # (steps + 1, T, D, D)
     present: np.ndarray  # (steps, T)
+
+
+@others.register(NoTools)
+def others_no_tools(which):
+    return False
+
+
+@others.register(Tools)
+def others_tools(which):
+    return True
 
 
 @role
