@@ -60,10 +60,10 @@ class Plain(Reporter):
 
     def compiling(self, text: str, expected: float) -> None:
         """Said once of each kernel that takes long; `expected` in seconds."""
-        what = text.partition(":")[0]
+        what = text.partition(":")[0].removesuffix(", once on this machine")
         if what and what != self.compiled and expected > LONG and not self.failures_only:
-            which = text.rpartition("kernel ")[2].partition(",")[0]
-            self.write(f"{what}, kernel {which}, once on this machine: about {expected:.0f} s")
+            which = f", kernel {text.rpartition('kernel ')[2].partition(',')[0]}" if "kernel " in text else ""
+            self.write(f"{what}{which}, once on this machine: about {expected:.0f} s")
         self.compiled = what or self.compiled
 
     def note(self, text: str) -> None:

@@ -8,6 +8,8 @@ import sys
 from mpm import compiling
 from mpm.contact.block import advance_block
 from mpm.costs import settled
+from mpm.implicit.drive import first_pair
+from mpm.outcome import COMPLETED, outcome
 from mpm.records.provenance import cores
 from mpm.scene.build import build
 from mpm.simulation import Clock, work_arrays
@@ -32,7 +34,7 @@ def compile_ahead(experiment) -> None:
     """
     if not core_to_spare() or not experiment.moving or experiment.grid.dimension == 0 or compiling.expected(experiment) < WORTH_A_PROCESS:
         return
-    if getattr(experiment.model, "kind", "full") == "auto" or experiment.method.mechanics != "explicit":
+    if getattr(experiment.model, "kind", "full") == "auto" or experiment.method.mechanics == "auto":
         return
     if not any(material.heat is not None for material in experiment.materials.values()):
         return
@@ -64,8 +66,11 @@ def at_start(experiment):
 
 
 def compile_step(experiment) -> None:
-    """Compile the mechanical step, by a block of no steps."""
+    """Compile the mechanical step, by a block of no steps; an implicit one by the first that a run tries, without heat."""
     scene, clock = at_start(experiment)
+    if scene.implicit is not None:
+        first_pair(scene, clock, work_arrays(scene), lambda *_: outcome(COMPLETED))
+        return
     (advance_references if scene.references else advance_block)(scene, clock, work_arrays(scene), present_limits(scene, clock).step(), 0)
 
 

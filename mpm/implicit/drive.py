@@ -129,6 +129,14 @@ def pair(scene, clock, work, dt: float, warm) -> tuple[float, Outcome]:
     return error, whole(scene, clock) if math.isfinite(error) else outcome(INVERTED, time=clock.time * scene.scale, step=clock.steps)
 
 
+def first_pair(scene, clock, work, warm) -> None:
+    """The pair of steps that a run begins with, whatever comes of it: it needs the kernels that all need."""
+    clock.told = scene.implicit.begin(0.0)
+    if scene.inflow is not None:
+        scene.inflow.enter(scene, 0.0)
+    pair(scene, clock, work, scene.implicit.first, warm)
+
+
 def whole(scene, clock) -> Outcome:
     """Whether the next step can begin: every particle is on the grid, and finite."""
     if scene.references or (wrong := unsound(scene.space, scene.bodies[0])) is None:
