@@ -76,7 +76,7 @@ def before(space, stop_axis, side, x):
 @kernel(inline=True)
 def find_walls(space, skin, stops, found, within, number):
     """Pieces before walls; how many."""
-    D, count = directions(space), 0
+    D, count, sight = directions(space), 0, min(within * space.h, skin.sight[0])
     for s in skin.near[: skin.starts[-1]]:
         b = skin.body[s]
         if skin.area[s] == 0.0:
@@ -86,7 +86,7 @@ def find_walls(space, skin, stops, found, within, number):
                 if stops[b, axis, side] < 0.0:
                     continue
                 gap = before(space, axis, side, skin.x[s, axis])
-                if gap >= within * space.h:
+                if gap >= sight:
                     continue
                 out, over = 1.0 if side == 0 else -1.0, -1
                 if len(number) > 0 and skin.area[s] > 2 * POINT * space.h ** (D - 1) and skin.normal[s, axis] * out < LEVEL:

@@ -30,6 +30,7 @@ class Skin(NamedTuple):
     starts: np.ndarray  # (bodies + 1,) on
     lone: np.ndarray  # (bodies,) whether particles without pieces may be
     left: np.ndarray  # (1,) how far anything may move until they are listed anew [m]
+    sight: np.ndarray  # (1,) how far before a wall contacts are looked for [m]
 
 
 @kernel
@@ -37,7 +38,8 @@ def new_skin(D, first):
     """Room for the pieces of bodies that begin at `first`."""
     P = first[-1]  # pieces that are still to come stay shut
     skin = Skin(np.zeros((P, D)), np.zeros((P, D)), np.zeros(P), np.zeros((P, D)), np.zeros(P, np.int64), np.empty(P, np.int64), first,
-                np.empty(P, np.int64), np.arange(P), np.arange(P), first.copy(), np.ones(len(first) - 1, np.bool_), np.full(1, -1.0))  # fmt: skip
+                np.empty(P, np.int64), np.arange(P), np.arange(P), first.copy(), np.ones(len(first) - 1, np.bool_), np.full(1, -1.0),
+                np.full(1, 1e300))  # fmt: skip
     for b in range(len(first) - 1):
         skin.body[first[b] : first[b + 1]] = b
     return skin

@@ -2,7 +2,7 @@
 
 A = sum W_A^2/m_i + sum W_B^2/m_j, the same for every direction;   lambda_n <- max(0, lambda_n - (u_n + max(g/dt, -PUSH c))/A),
 lambda_t <- lambda_t - u_t/A, cut to mu lambda_n.   Ends when a sweep over all changes no speed A lambda by more than CLOSE of the largest, or after SWEEPS.
-Between two such sweeps come those over the contacts that still changed by more than QUIET of that: they are soon few.
+Between two such sweeps come those over the contacts that still changed by more: they are soon few.
 W/sqrt(m) and v sqrt(m) are worked with: no sweep asks for a mass. A tool that forces move adds its 1/M to A, and takes the reaction along its direction.
 Overlap, where a scene has any, is pushed out at PUSH of the speed of sound c at most. Sweeps run forwards and backwards in turn, one thread's work;
 of scenes in slabs: solve_threaded.py.
@@ -16,10 +16,9 @@ from mpm.boundary import directions, extents
 from mpm.contact.spots import WIDE, lanes_of, new_places, places, spans
 from mpm.contact.tools import carry, lightness, recoil
 from mpm.jit import kernel
-from mpm.lanes import fma, load4, splat4, store
+from mpm.lanes import fma, load4, peek, splat4, store
 
 PUSH, CLOSE, SWEEPS = 0.01, 3e-3, 60
-QUIET = 0.3
 FAINT = 1e-9  # of the speed of sound: smaller changes are none
 SURE = 0.1  # cells: closer gaps are always in the sweeps
 
@@ -28,9 +27,9 @@ class Problem(NamedTuple):
     """What the impulses of a step are looked for with. F fields, C contacts, M nodes of a contact, K nodes that any acts on."""
 
     contacts: Any
-    at: np.ndarray  # (C, 2, M) their numbers among those
+    at: np.ndarray  # (C, 2, M) their numbers among those; half as long as others, as sweeps read them from the second-level cache
     row: np.ndarray  # (C * 2 * M,) the same, in one row
-    coef: np.ndarray  # (C, 2, M, WIDE) W/sqrt(m)
+    coef: np.ndarray  # (C, 2, M, 1) W/sqrt(m), or (C, 2, M, WIDE) where a mirror is in sight, which turns directions each its own way
     velocity: np.ndarray  # (K, WIDE) v sqrt(m)
     mass: np.ndarray  # (K,) m
     light: np.ndarray  # (K,) 1/sqrt(m); 0 without mass
@@ -44,9 +43,9 @@ class Problem(NamedTuple):
 @kernel
 def pose(space, walls, fields, contacts, count, nodes, tools, number):
     """The problem of contacts 0..count, on the nodes (F, n, columns) that they act on, its weights still to come. number (n,): -1 before and after."""
-    D, shape, here, used = directions(space), extents(space), new_places(space), 0
+    D, shape, here, used, mirrored = directions(space), extents(space), new_places(space), 0, False
     n0, n1, n2 = spans(space)
-    at = np.empty((count, 2, n0 * n1 * n2), np.int64)
+    at = np.empty((count, 2, n0 * n1 * n2), np.int32)
     place, field, row = np.empty(at.size, np.int64), np.empty(at.size, np.int64), at.reshape(-1)
     for f in range(nodes.shape[0]):
         first = used
@@ -54,7 +53,7 @@ def pose(space, walls, fields, contacts, count, nodes, tools, number):
             for k in range(2):
                 if contacts.body[i, k] < 0 or fields[contacts.body[i, k]] != f:
                     continue
-                places(space, walls[f], contacts.home[i, k], here)
+                mirrored = places(space, walls[f], contacts.home[i, k], here) or mirrored
                 m = (2 * i + k) * n0 * n1 * n2
                 for j0 in range(n0):
                     for j1 in range(n1):
@@ -74,7 +73,7 @@ def pose(space, walls, fields, contacts, count, nodes, tools, number):
         light[j] = 1.0 / root if root > 0.0 else 0.0
         for c in range(D):
             velocity[j, c] = root * nodes[field[j], place[j], c] if root < np.inf else 0.0
-    coef, bear, impulse = np.empty((*at.shape, WIDE)), np.zeros((count, WIDE)), np.zeros((count, D))
+    coef, bear, impulse = np.empty((count, 2, n0 * n1 * n2, WIDE if mirrored else 1)), np.zeros((count, WIDE)), np.zeros((count, D))
     return Problem(contacts, at, row, coef, velocity, mass, light, place[:used], field[:used], tools, impulse, bear)
 
 
@@ -129,7 +128,7 @@ def sweep_over(problem, some, back, every, D, dt, sound, inverse, u, quiet, scal
         if every or not quiet[i]:
             changed, given = one(problem, i, D, dt, sound, inverse, u)
             worst, largest = max(worst, changed), max(largest, given)
-            quiet[i] = changed <= QUIET * CLOSE * max(scale, largest)
+            quiet[i] = changed <= CLOSE * max(scale, largest)
     return worst, largest
 
 
@@ -181,16 +180,22 @@ def node(problem, m):
 
 
 @kernel(inline=True)
+def weight(problem, m, narrow):
+    """W/sqrt(m) there, of each direction."""
+    return splat4(peek(problem.coef, m)) if narrow else load4(problem.coef, WIDE * m)
+
+
+@kernel(inline=True)
 def through(problem, i, k):
     """sum W v of side k of contact i: three sums at once, as each waits for its last product."""
-    M = problem.at.shape[2]
+    M, narrow = problem.at.shape[2], problem.coef.shape[3] == 1
     here, one, two, three = (2 * i + k) * M, splat4(0.0), splat4(0.0), splat4(0.0)
     for m in range(here, here + M - 2, 3):
-        one = fma(load4(problem.coef, WIDE * m), load4(problem.velocity, WIDE * node(problem, m)), one)
-        two = fma(load4(problem.coef, WIDE * (m + 1)), load4(problem.velocity, WIDE * node(problem, m + 1)), two)
-        three = fma(load4(problem.coef, WIDE * (m + 2)), load4(problem.velocity, WIDE * node(problem, m + 2)), three)
+        one = fma(weight(problem, m, narrow), load4(problem.velocity, WIDE * node(problem, m)), one)
+        two = fma(weight(problem, m + 1, narrow), load4(problem.velocity, WIDE * node(problem, m + 1)), two)
+        three = fma(weight(problem, m + 2, narrow), load4(problem.velocity, WIDE * node(problem, m + 2)), three)
     for m in range(here + M - M % 3, here + M):
-        one = fma(load4(problem.coef, WIDE * m), load4(problem.velocity, WIDE * node(problem, m)), one)
+        one = fma(weight(problem, m, narrow), load4(problem.velocity, WIDE * node(problem, m)), one)
     return one + two + three
 
 
@@ -211,14 +216,14 @@ def speed(problem, i, D, u):
 @kernel(inline=True)
 def push(problem, i, D, change):
     """Put a change of impulse on both sides."""
-    contacts, M, size = problem.contacts, problem.at.shape[2], lanes_of(D, change)
+    contacts, M, size, narrow = problem.contacts, problem.at.shape[2], lanes_of(D, change), problem.coef.shape[3] == 1
     for k in range(2):
         if contacts.body[i, k] < 0:
             continue
         way = size if k == 0 else -size
         for m in range((2 * i + k) * M, (2 * i + k + 1) * M):
             n = node(problem, m)
-            store(problem.velocity, WIDE * n, fma(load4(problem.coef, WIDE * m), way, load4(problem.velocity, WIDE * n)))
+            store(problem.velocity, WIDE * n, fma(weight(problem, m, narrow), way, load4(problem.velocity, WIDE * n)))
     recoil(problem.tools, contacts.free[i], change[:D])
 
 

@@ -53,14 +53,17 @@ def beside(walls, a, n, i, reach):
 
 @kernel(inline=True)
 def places(space, walls, home, place):
-    """The places (3, reach) that `along` fills, and nothing else."""
+    """The places (3, reach) that `along` fills, and nothing else. Whether a mirror is in sight."""
+    mirrored = False
     for a in range(directions(space)):
         i0, n = stencil(space.basis, home[a] * (1.0 / space.h))[0], extents(space)[a]
         for k in range(seen(space)):
             place[a, k] = i0 + k
         if beside(walls, a, n, i0, seen(space)):
             for k in range(seen(space)):
-                place[a, k] = image(walls, a, n, i0 + k)[0]
+                place[a, k], side = image(walls, a, n, i0 + k)
+                mirrored = mirrored or side >= 0
+    return mirrored
 
 
 @kernel(inline=True)

@@ -14,7 +14,7 @@ from mpm.contact.find import find_all, list_near
 from mpm.contact.found import BODY, NEAR, STRAY, others, whole
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins, new_skin
-from mpm.contact.solve import apart, pose, press, settle, speed
+from mpm.contact.solve import SURE, apart, pose, press, settle, speed
 from mpm.contact.sums import add_up, hold_good, make_room, new_sums
 from mpm.contact.tools import arm, follow, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
@@ -28,6 +28,7 @@ from mpm.jit import kernel
 from mpm.transfer import wants_change
 
 TOUCH = 0.05  # cells: a gap below it touches
+SPARE = 0.05  # cells: a gap that is wider than this, SURE, and four times what any particle moves in a step, is not closed by one
 
 
 class Touching(NamedTuple):
@@ -147,6 +148,7 @@ def meet(method, bodies, touching, skin, sums, grids, now, pace, reports):
 def seek(space, bodies, touching, skin, sums, travel):
     """(contacts, how many) of the present positions; no particle has moved farther than `travel` [m] since the step before."""
     skin.left[0] -= travel
+    skin.sight[0] = (SURE + SPARE) * space.h + 4.0 * travel if travel > 0.0 else NEAR * space.h  # a block begins with what is not known
     if skin.left[0] >= 0.0:
         lay_skins(space, bodies, skin, skin.near, skin.starts)
     else:

@@ -15,7 +15,7 @@ from mpm.contact.found import BODY, whole
 from mpm.contact.spots import WIDE, along, gathered, lanes_of, level, new_lines, new_slopes, new_spots, products, row_of, slopes_at, spans, sum4, turns, way_to
 from mpm.contact.sums import forget, recall
 from mpm.jit import kernel
-from mpm.lanes import fma, four, item, load4, put, splat4, store
+from mpm.lanes import fma, four, item, load4, poke, put, splat4, store
 
 
 @kernel
@@ -83,7 +83,7 @@ def share(space, gradient, walls, skin, sums, seat, problem, i, k, room):
         turns(space, walls, spots, signs)
     if contacts.balanced[i, k] and problem.mass[problem.row[here + M // 2]] < np.inf:  # a body that stands bears anything
         balance(space, contacts, i, k, here, mirrored, seat, problem, sums, room)
-    every = four(1.0, 1.0 if D > 1 else 0.0, 1.0 if D > 2 else 0.0, 0.0)
+    narrow, every = problem.coef.shape[3] == 1, four(1.0, 1.0 if D > 1 else 0.0, 1.0 if D > 2 else 0.0, 0.0)
     for j0 in range(n0):
         for j1 in range(n1):
             r, m = j0 * n1 + j1, here + (j0 * n1 + j1) * n2
@@ -91,7 +91,10 @@ def share(space, gradient, walls, skin, sums, seat, problem, i, k, room):
             square = fma(size, size, square)
             both = load4(signs, WIDE * j0) * load4(signs, WIDE * (n0 + j1)) if mirrored else every
             for j2 in range(n2):
-                store(problem.coef, WIDE * (m + j2), splat4(item(size, j2)) * (both * load4(signs, WIDE * (2 * n0 + j2)) if mirrored else every))
+                if narrow:
+                    poke(problem.coef, m + j2, item(size, j2))
+                else:
+                    store(problem.coef, WIDE * (m + j2), splat4(item(size, j2)) * (both * load4(signs, WIDE * (2 * n0 + j2)) if mirrored else every))
     if mirrored:
         merge(problem.at[i, k], problem.coef[i, k])
         borne = nothing
