@@ -76,6 +76,8 @@ def advance_block(scene, clock, work: Work, dt: float, steps: int) -> Outcome:
     if scene.inflow is not None:
         scene.inflow.lay(clock.time, dt * steps)
     astray = push(scene, clock, work, float(dt), float(kick), steps, float(dt), clock.reports)
+    if met is not None and (scene.inflow is not None or not clock.touching):
+        met.forget()
     if met is not None and met.drive is not None and not clock.touching:
         met.drive.drift(clock.time, dt, kick, steps)
     if scene.course is not None:

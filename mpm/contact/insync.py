@@ -14,6 +14,7 @@ Fails when a contact closes or opens within the step: then the velocity of what 
 from contextlib import contextmanager
 
 from mpm.contact.block import push
+from mpm.contact.sums import kept, new_sums, taken_up
 from mpm.integrate.strain import CODE
 from mpm.memory import arrays
 
@@ -38,8 +39,9 @@ def in_sync(scene, clock, work):
     if scene.course is not None:
         scene.course.lay(scene, clock.time, STILL * clock.lag, 1, 1.0)
     changed = scene.bodies, () if scene.meeting is None else scene.meeting.touching
-    now = arrays(changed)
-    kept = {path: array.copy() for path, array in now.items()}
+    now, met = arrays(changed), scene.meeting
+    sums = None if met is None else taken_up(new_sums(scene.space, len(scene.bodies)), kept(met.sums))
+    before = {path: array.copy() for path, array in now.items()}
     reach, dt, reports = scene.order.reach.copy(), 2 * clock.lag, clock.reports.copy()
     for kick in (0.0, clock.lag):
         reports[:] = 0.0
@@ -48,10 +50,13 @@ def in_sync(scene, clock, work):
             raise ArithmeticError("a state that was found sound takes no step")  # no state does that: the guards look at it first
         if kick == 0.0:
             idle = [(body.particles.v.copy(), body.particles.C.copy()) for body in scene.bodies]
-            put_back(now, kept)
+            put_back(now, before)
     pushed = [(body.particles.v - v, body.particles.C - C) for body, (v, C) in zip(scene.bodies, idle, strict=True)]
-    put_back(now, kept)
-    del kept, idle
+    put_back(now, before)
+    if met is not None:
+        met.forget()
+        met.sums = sums
+    del before, idle
     for body, (v, C) in zip(scene.bodies, pushed, strict=True):
         body.particles.v[...] += v
         body.particles.C[...] += C

@@ -13,7 +13,7 @@ from mpm.boundary import directions, extents
 from mpm.contact.find import find_all
 from mpm.contact.found import BODY, NEAR
 from mpm.contact.pairs import Pairs
-from mpm.contact.skin import lay_skins, new_skin
+from mpm.contact.skin import lay_skins
 from mpm.contact.spots import seen
 from mpm.contact.tools import NoTools
 from mpm.integrate.heat_matrix import nodes_of
@@ -32,9 +32,9 @@ class Links(NamedTuple):
 
 
 @kernel
-def find_links(space, bodies, touching, walls, conductance, dt):
-    """The links of a heat step of dt. walls (B, 3, 2): mirrors of each body's temperature; conductance (B, B) [W/(m2 K)]. Welded bodies always touch."""
-    D, skin = directions(space), new_skin(directions(space), touching.first)
+def find_links(space, bodies, touching, skin, walls, conductance, dt):
+    """The links of a heat step of dt; skin: its own. walls (B, 3, 2): mirrors of temperature; conductance (B, B) [W/(m2 K)]. Welded bodies always touch."""
+    D = directions(space)
     M = seen(space) ** D
     lay_skins(space, bodies, skin, skin.every, skin.first)
     stops, pairs = np.full_like(touching.stops, -1.0), Pairs(conductance - 1e-300)

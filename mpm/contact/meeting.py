@@ -14,14 +14,17 @@ from mpm.contact.found import BODY
 from mpm.contact.held import Held, NotHeld
 from mpm.contact.links import PERFECT, find_links
 from mpm.contact.pairs import NoPairs, Pairs
+from mpm.contact.skin import Skin, new_skin
 from mpm.contact.solve import SURE
 from mpm.contact.spots import seen
 from mpm.contact.step import Pace, Touching, advance_touching
 from mpm.contact.step_threaded import advance_touching_slabs
+from mpm.contact.sums import Sums, kept, new_sums, taken_up
 from mpm.contact.texture import texture
 from mpm.contact.tools import NoTools
 from mpm.integrate.heat_step import Back
 from mpm.integrate.step_parts import Grids, method_of
+from mpm.integrate.strain import SPEED
 from mpm.integrate.timestep import conductance
 from mpm.jit import kernel
 from mpm.lanes import aligned
@@ -59,6 +62,8 @@ class Meeting:
     told: float = field(default=0.0, init=False)  # up to when impulses were recorded [s]
     shown: float = field(default=0.0, init=False)  # up to when areas in touch were recorded [s]
     left: float = field(default=-1.0, init=False)  # how far anything may still move before something can be near [m]
+    skin: Skin = field(init=False)  # with what is near, while little moves (find.py)
+    sums: Sums = field(init=False)  # what weights want of particles, likewise
     buffers: tuple | None = field(default=None, init=False)
     scratch: np.ndarray | None = field(default=None, init=False)
 
@@ -78,6 +83,7 @@ class Meeting:
                                  np.array([P // 4 + 64]), held)  # fmt: skip
         self.passed, self.passing, self.hardest, self.grown = np.zeros((B, B)), self.links > 0, np.zeros((B, K, 2)), np.zeros((B, B))
         self.entered = np.zeros((B, K))
+        self.skin, self.sums = new_skin(D, first), new_sums(self.space, B)
 
     @property
     def tool_names(self) -> tuple[str, ...]:
@@ -91,7 +97,7 @@ class Meeting:
     def memory(self) -> dict:
         """What a run that goes on needs (mpm.memory)."""
         own = {name: getattr(self, name) for name in ("left", "told", "shown", "passed", "hardest", "grown", "entered")}
-        return {name: getattr(self.touching, name) for name in KEPT} | own | self.free()
+        return {name: getattr(self.touching, name) for name in KEPT} | own | self.free() | {"sums": kept(self.sums)}
 
     def free(self) -> dict:
         """What forces have done to tools."""
@@ -106,6 +112,11 @@ class Meeting:
             getattr(self, name)[...] = found[name]
         for name, array in self.free().items():
             array[...] = found[name]
+        self.skin.left[0], self.sums = -1.0, taken_up(self.sums, found["sums"])
+
+    def forget(self) -> None:
+        """Something may have moved of which the contacts were not told."""
+        self.skin.left[0], self.sums.moved[0] = -1.0, np.inf
 
     def touched(self, b: int, against: int) -> np.ndarray:
         """Time in touch of the pieces of body b with an obstacle (mpm.contact.found): a view (pieces,) [s]."""
@@ -160,7 +171,7 @@ class Meeting:
             return None
         most = np.array([conductance(body.thermal)[0] if isinstance(body.thermal, Thermal) else 0.0 for body in self.bodies])
         H = np.minimum(self.links, PERFECT / self.space.h * np.maximum(most[:, None], most[None]) * (np.minimum(most[:, None], most[None]) > 0))
-        found = find_links(self.space, self.bodies, self.touching, walls, H, dt)
+        found = find_links(self.space, self.bodies, self.touching, new_skin(directions(self.space), self.touching.first), walls, H, dt)
         return found if len(found.rate) else None
 
     def conduct(self, scene, walls, links, dt: float):
@@ -217,9 +228,12 @@ class Meeting:
         if self.drive is not None:
             self.drive.lay(time, pace.ahead, pace.steps, pace.kick - 0.5 * pace.dt)
         if scene.order.sliced:
-            return advance_touching_slabs(scene, self.touching, grids, pace, reports)
-        advance_touching(method_of(scene), scene.for_motion, self.touching, grids, scene.gravity, pace, reports)
-        return False
+            late = advance_touching_slabs(scene, self, grids, pace, reports)
+        else:
+            late, found = False, (self.touching, self.skin, self.sums, grids)
+            self.sums = advance_touching(method_of(scene), scene.for_motion, *found, scene.gravity, pace, reports)
+        self.skin.left[0] -= pace.dt * math.sqrt(max(reports[:, SPEED].tolist()))  # the last step's; those before it were counted
+        return late
 
     def apart(self, scene):
         """Nodes of every field, once something is near."""

@@ -33,9 +33,8 @@ class Skin(NamedTuple):
     sight: np.ndarray  # (1,) how far before a wall contacts are looked for [m]
 
 
-@kernel
 def new_skin(D, first):
-    """Room for the pieces of bodies that begin at `first`."""
+    """Room for the pieces of bodies that begin at `first`; nothing listed yet."""
     P = first[-1]  # pieces that are still to come stay shut
     skin = Skin(np.zeros((P, D)), np.zeros((P, D)), np.zeros(P), np.zeros((P, D)), np.zeros(P, np.int64), np.empty(P, np.int64), first,
                 np.empty(P, np.int64), np.arange(P), np.arange(P), first.copy(), np.ones(len(first) - 1, np.bool_), np.full(1, -1.0),

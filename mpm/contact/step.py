@@ -13,9 +13,9 @@ from mpm.boundary.walls import empty, unfold
 from mpm.contact.find import find_all, list_near
 from mpm.contact.found import BODY, NEAR, STRAY, others, whole
 from mpm.contact.held import hold
-from mpm.contact.skin import lay_skins, new_skin
+from mpm.contact.skin import lay_skins
 from mpm.contact.solve import SURE, apart, pose, press, settle, speed
-from mpm.contact.sums import add_up, hold_good, make_room, new_sums
+from mpm.contact.sums import add_up, hold_good, make_room
 from mpm.contact.tools import arm, follow, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
 from mpm.integrate.explicit import clean, pass_body, update
@@ -67,10 +67,10 @@ class Pace(NamedTuple):
 
 
 @kernel
-def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
-    """As explicit.advance with the nodes of every field."""
+def advance_touching(method, bodies, touching, skin, sums, grids, gravity, pace, reports):
+    """As explicit.advance with the nodes of every field. The sums of weights.py, as they are then."""
     shape, fields, steps, first = extents(method.space), len(touching.walls), pace.steps, field_buffers(grids, 0)
-    chunk, skin, sums = scratch(method, bodies, first.nodes), new_skin(gravity.shape[1], touching.first), new_sums(method.space, len(touching.fields))
+    chunk = scratch(method, bodies, first.nodes)
     for f in range(fields):
         empty(shape, grids.boxes[f, 0])
         empty(shape, grids.boxes[f, 1])
@@ -90,7 +90,7 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
             ok = ok and pass_body(method, body, chunk, field_buffers(grids, touching.fields[b]), moment, reports[b])
             b += 1
         if not ok:
-            return
+            break
         if opening:
             sparse = False
             for f in range(fields):
@@ -98,6 +98,7 @@ def advance_touching(method, bodies, touching, grids, gravity, pace, reports):
         else:
             for f in range(fields):
                 clean(method, field_buffers(grids, f), now)
+    return sums
 
 
 @kernel

@@ -6,12 +6,12 @@ threads gives the same bits. So do the impulses (solve_threaded.py). Which piece
 
 import numpy as np
 
-from mpm.boundary import CONTACT, directions, extents
-from mpm.contact.skin import lay_skins, new_skin
+from mpm.boundary import CONTACT, extents
+from mpm.contact.skin import lay_skins
 from mpm.contact.solve import pose
 from mpm.contact.solve_threaded import PART, press_in_slabs
 from mpm.contact.step import after_contacts, before_contacts, finish, seek
-from mpm.contact.sums import fall_short, forget, hold_good, lean_all, make_room, new_sums, pieces_within, recall
+from mpm.contact.sums import fall_short, forget, hold_good, lean_all, make_room, pieces_within, recall
 from mpm.contact.weights import seats, shares
 from mpm.integrate.step_parts import method_of, scratch
 from mpm.integrate.step_threaded import steps_in_slabs, wave
@@ -26,19 +26,19 @@ def new_scratch(method, bodies, grids):
     return scratch(method, bodies, grids.nodes[0])
 
 
-def advance_touching_slabs(scene, touching, grids, pace, reports) -> bool:
-    """As step.advance_touching. Whether a chunk was late (integrate/step_threaded.py)."""
-    method, bodies, skin = method_of(scene), scene.for_motion, new_skin(directions(scene.space), touching.first)
-    chunk, sums = new_scratch(method, bodies, grids), new_sums(scene.space, len(bodies))
+def advance_touching_slabs(scene, met, grids, pace, reports) -> bool:
+    """As step.advance_touching, for a meeting. Whether a chunk was late (integrate/step_threaded.py)."""
+    method, bodies, touching, skin = method_of(scene), scene.for_motion, met.touching, met.skin
+    chunk = new_scratch(method, bodies, grids)
 
     def between(step, now, _, slabs, crew):
         before_contacts(method, bodies, chunk, touching, grids, (step, now), scene.gravity, pace)
-        nonlocal sums
+        sums = met.sums
         contacts, count = seek(scene.space, bodies, touching, skin, sums, pace.dt * float(slabs.reports[..., SPEED].max()) ** 0.5)
         if count > 0:
             nodes = grids.nodes[:, now]
             if not hold_good(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number):
-                sums = make_room(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number)
+                met.sums = sums = make_room(scene.space, touching.walls, touching.fields, sums, contacts, count, touching.number)
                 add_up_in_slabs(scene, touching, skin, sums, slabs, crew)
             problem = pose(scene.space, touching.walls, touching.fields, contacts, count, nodes, touching.tools, touching.number)
             weigh_in_slabs(scene, touching, skin, sums, problem, crew)

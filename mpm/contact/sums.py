@@ -1,9 +1,10 @@
-"""What the particles near a contact put on the nodes that it acts on: r and T of weights.py, kept from step to step of a block while little moves.
+"""What the particles near a contact put on the nodes that it acts on: r and T of weights.py, kept from step to step while little moves.
 
 Nothing near moves by more than LAG of a cell before they are made anew, or are wanted on another node: W is late by that, and in its correction alone. It stays
-linear-exact, and what it gives to one body it takes from the other. A block of steps begins with none.
+linear-exact, and what it gives to one body it takes from the other. A run that goes on has those that it was cut with (meeting.py).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -33,14 +34,22 @@ class Sums(NamedTuple):
     lean: np.ndarray  # (K, WIDE) r_c/T_cc; 0 where there is no face
 
 
-@kernel
 def new_sums(space, B):
     """None yet."""
-    D, n = directions(space), 1
-    for length in extents(space):
-        n *= length
+    D, n = directions(space), math.prod(extents(space))
     none = np.zeros((0, WIDE))
-    return Sums(np.empty(B * n, np.int64), np.zeros(B + 1, np.int64), np.empty((B, 2, D)), np.full(1, np.inf), none, none, none, none)
+    return Sums(np.empty(B * n, np.int64), np.zeros(B + 1, np.int64), np.zeros((B, 2, D)), np.full(1, np.inf), none, none, none, none)
+
+
+def kept(sums):
+    """What of the sums outlasts a run that is cut: plain arrays."""
+    return {**sums._asdict(), "place": sums.place[: sums.first[-1]]}
+
+
+def taken_up(sums, found):
+    """The sums that were `kept`; sums: any of the scene."""
+    sums.place[: len(found["place"])] = found["place"]
+    return Sums(**{name: np.array(value) for name, value in found.items()} | {"place": sums.place})
 
 
 @kernel
