@@ -108,7 +108,7 @@ def heat(experiment: Any, run: Run) -> Iterator[str]:
     yield from conducted(experiment, run)
     largest, off = (max(np.abs(run.series[name]).max() for name in names) for names in (("heat_total", "heat_exchanged"), ("heat_ledger",)))
     if off > HEAT * largest and off > HEAT * (largest := max(largest, within(experiment, run))) > 0:
-        yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {100 * off / largest:.2g} % of the larger"
+        yield f"heat content and heat taken in disagree by {off:.3g} {joules(experiment)}, {float(f'{100 * off / largest:.2g}'):g} % of the larger"
 
 
 def exchanged(experiment: Any, name: str) -> float:
@@ -193,7 +193,7 @@ def energy(experiment: Any, run: Run) -> Iterator[str]:
     if abs(worst) > ENERGY * most > ENERGY * round_off(experiment, run) and not slow:
         lost = "is lost to long steps, which damp what is thrown or falls" if implicit else "is lost to transfers, walls and time steps"
         said = lost if worst > 0 else "appears that no load and no heat accounts for"
-        yield f"{abs(worst):.3g} {joules(experiment)}, {100 * abs(worst) / most:.2g} % of what motion holds or dissipates, {said}"
+        yield f"{abs(worst):.3g} {joules(experiment)}, {float(f'{100 * abs(worst) / most:.2g}'):g} % of what motion holds or dissipates, {said}"
 
 
 def cells(count: float) -> str:

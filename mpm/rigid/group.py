@@ -111,7 +111,7 @@ def assembled(side: SideBySide, shapes, joints, axisymmetric: bool, h: float, mo
     diff = np.unique(np.concatenate([np.abs(columns - rows) for rows, columns, _ in (*between, *mass, *stiffness, *exchange)]))
     hot = side.stencil(side.triplets([part.hot for part in parts]), diff) if any(len(part.hot) for part in parts) else np.zeros((0, 0))
     shaped = side.geometry(side.stencil(scaled(mass, capacity), diff), side.stencil(scaled(stiffness, kappas), diff), diff, capacity, h)
-    zero = max(parts, key=lambda part: part.stiff).zero
+    zero = max(parts, key=lambda part: part.firm).zero
     coldest, hottest = min(part.coldest for part in parts), max(part.hottest for part in parts)
     start, density = (side.values([np.where(part.geometry.active, getattr(part, name), 0.0) for part in parts]) for name in ("start", "density"))
     return Group(
@@ -119,7 +119,7 @@ def assembled(side: SideBySide, shapes, joints, axisymmetric: bool, h: float, mo
         exchange=side.stencil([*exchange, *between], diff), facing=side.values([part.facing for part in parts]), programmes=side.programmes(zero),
         radiant=side.radiant(zero), hot=hot, span=max(hottest - coldest, 1e-6 * max(abs(hottest), abs(coldest)), 1e-30), coldest=coldest, hottest=hottest,
         stiff=max(part.stiff for part in parts), bounds=(min(part.bounds[0] for part in parts), max(part.bounds[1] for part in parts)), parts=parts,
-        into=side.into, owner=side.owner(), leaving=leaving, joints=linked, density_of=density, blunt=not all(fixed),
+        firm=max(part.firm for part in parts), into=side.into, owner=side.owner(), leaving=leaving, joints=linked, density_of=density, blunt=not all(fixed),
     )  # fmt: skip
 
 

@@ -75,6 +75,7 @@ class System:
     hottest: float  # [K]
     stiff: float  # largest beta h/kappa
     bounds: tuple[float, float]  # that no temperature may pass: infinite on the side of a flux [K]
+    firm: float  # largest beta h/kappa of the whole run: what `zero` goes by, as the state of a run is relative to it from one jump to the next
 
 
 def law(given):
@@ -89,7 +90,7 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     shaped = (hat_geometry if hats else geometry)(body.shape, axisymmetric, float(h), tuple(float(o) for o in origin), sides, others)
     data = temperatures(body, shaped)
     conductivity = max(value(kappa, t) for t in data)
-    betas, zero = coefficients(body, shaped, conductivity, h, moment)
+    betas, most, zero = coefficients(body, conductivity, h, moment)
     exchange, facing, steady, forcing = convection(body, shaped, betas, zero, conductivity if hats else None, moment)
     steady, given, data, bounded = fluxes(body, shaped, steady, data, alpha, conductivity, end, moment)
     through = 0.0 if any(turns(beta) for _, beta, _ in body.surfaces) else float(facing.sum())
@@ -98,12 +99,12 @@ def make_system(body: RigidBody, axisymmetric: bool, h: float, origin, end: floa
     bounded = -math.inf if sunk > 0 else bounded[0], math.inf if grown > 0 else bounded[1]
     radiant, hot = radiating(body, shaped, zero, len(body.surfaces) + len(body.fluxes), max(data), moment)
     span = max(max(data) - min(data), 1e-6 * max(map(abs, data)), 1e-30)
-    stiff = max(betas, default=0.0) * h / conductivity if conductivity > 0 else 0.0
+    stiff, firm = (max(each, default=0.0) * h / conductivity if conductivity > 0 else 0.0 for each in (betas, most))
     skies = tuple(float(sky) if isinstance(sky, int | float) else sky for sky in (during(sky, moment) for _, _, sky in body.radiation))
     programmes = Programmes(steady, tuple(forcing), tuple(given), skies, zero, heated.within)
     return System(
         shaped, float(body.density), kappa, alpha, float(body.temperature), body.field, zero, exchange, facing, programmes, radiant, hot, span, min(data),
-        max(data), stiff, bounded,
+        max(data), stiff, bounded, firm,
     )  # fmt: skip
 
 
@@ -118,15 +119,16 @@ def temperatures(body: RigidBody, shaped: Geometry) -> list[float]:
     return data
 
 
-def coefficients(body: RigidBody, shaped: Geometry, conductivity: float, h: float, moment: float) -> tuple[list[float], float]:
-    """(beta of each surface at a moment, a number where it is infinite [W/(m2 K)]; the temperature that others are relative to [K])."""
+def coefficients(body: RigidBody, conductivity: float, h: float, moment: float) -> tuple[list[float], list[float], float]:
+    """(beta of each surface at a moment, and the largest of the run, numbers where they are infinite [W/(m2 K)]; the temperature that others are relative
+    to [K], which is the same at all moments, whatever touches the body)."""
     finite = PENALTY * conductivity / h
     most = [finite if math.isinf(beta) else beta for beta in (float(bounds(beta)[1]) for _, beta, _ in body.surfaces)]
     betas = [finite if math.isinf(beta) else beta for beta in (during(beta, moment) for _, beta, _ in body.surfaces)]
-    depth = shaped.volume.sum() / max(sum(a.sum() for a in shaped.area), 1e-300)
+    depth = 0.5 * float(np.min(np.subtract(*body.shape.bounds()[::-1])))
     stiffest = int(np.argmax(most)) if most else 0
     zero = float(at(body.surfaces[stiffest][2], 0.0)) if most and most[stiffest] * depth > conductivity else float(body.temperature)
-    return betas, zero
+    return betas, most, zero
 
 
 def convection(

@@ -57,18 +57,19 @@ def insulator(experiment, name: str) -> bool:
 
 
 def refuse_covered(experiment, outlines, found) -> None:
-    """SceneError for an exchange of a side that other bodies cover from end to end."""
+    """SceneError for an exchange of a side that other bodies cover from end to end, for as long as it would act."""
     from mpm.rigid.touching import covered, lines_of, surface_beside
 
     names, h = list(experiment.bodies), experiment.grid.cell
-    for b, name in enumerate(names):
-        others = tuple(outlines[j.second if j.first == b else j.first] for j in found if b in (j.first, j.second))
-        entries = [(index, entry) for index, entry in enumerate(experiment.surfaces) if entry.of == name]
-        if not others or not entries:
+    for index, entry in enumerate(experiment.surfaces):
+        b, (begin, end) = names.index(entry.of), spell(entry)
+        lasting = [j for j in found if b in (j.first, j.second) and j.begin <= begin and j.end >= min(end, experiment.time.end)]
+        others = tuple(outlines[j.second if j.first == b else j.first] for j in lasting)
+        if not others:
             continue
         lines = [lines_of(outlines[b], h, k) for k in range(outlines[b].dimension)]
         surface = surface_beside(outlines[b], others, lines, 2, h)
         bare = ~covered(surface.x, surface.normal, others, h)
-        for index, entry in entries:
-            if not np.any(bare & outlines[b].faces(surface, entry.side, experiment.grid.dimension == 2)):
-                raise SceneError(("surfaces", index), f"other bodies cover side {entry.side!r} of {name}, and nothing is exchanged there: leave the entry out")
+        if not np.any(bare & outlines[b].faces(surface, entry.side, experiment.grid.dimension == 2)):
+            said = f"other bodies cover side {entry.side!r} of {entry.of}, and nothing is exchanged there: leave the entry out"
+            raise SceneError(("surfaces", index), said)

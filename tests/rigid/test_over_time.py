@@ -1,6 +1,7 @@
 """What acts on bodies that do not move for a part of the run, or jumps: a slab that is flipped, against the exact solution of its two phases."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -164,3 +165,45 @@ def test_a_point_meets_what_is_constant():
     for key, more in (("from", {"from": 0.5}), ("beta", {"convection": {"beta": {"sine": {"mean": 3, "amplitude": 1, "period": 1}}, "outside": 400}})):
         with pytest.raises(ConfigError, match=rf"surfaces.0.*{key}"):
             mpm.load(data | {"surfaces": [{"of": "b", "convection": {"beta": 1, "outside": 400}} | more]})
+
+
+def slabs(cuts, surfaces, contacts=()):
+    """Slabs side by side, of one material, at 300 and 340 K."""
+    ends = list(pairwise(cuts))
+    return mpm.run_point(mpm.load({
+        "grid": {"dimension": 1, "size": [0.02], "cell": 5e-4}, "time": {"end": 60.0},
+        "materials": {"m": {"density": 1000.0, "heat": {"fourier": {"kappa": 0.5, "alpha": 3000.0}}}},
+        "bodies": {f"b{k}": {"shape": {"box": {"lower": [low], "upper": [high]}}, "material": "m", "temperature": 340.0 if k else 300.0}
+                   for k, (low, high) in enumerate(ends)},
+        "surfaces": surfaces, "contacts": list(contacts), "output": {"every": 10.0, "probes": {"p": [0.003]}},
+    })).series["temperature_p"]  # fmt: skip
+
+
+@pytest.mark.parametrize("late", ["left", "right"])
+def test_of_slabs_that_conduct_the_side_held_hardest_may_begin_late(late):
+    """Temperatures of a group were relative to another one from then on, and jumped by the difference. A slab, and the same in two of which nothing passes."""
+    begin = {"from": 20.0}
+    sides = [{"of": "b0", "side": "left", "fixed": {"temperature": 290.0}}, {"of": "b0", "side": "right", "convection": {"beta": 100.0, "outside": 400.0}}]
+    sides[late == "right"] |= begin
+    whole = slabs([0.002, 0.006], sides)
+    apart = [sides[0], *({**sides[1], "of": of} for of in ("b0", "b1"))]
+    until = slabs([0.002, 0.006, 0.011], apart, [{"between": ["b0", "b1"], "from": 500.0}])
+    np.testing.assert_allclose(until, whole, atol=2e-3)
+    assert np.ptp(whole) > 1.0
+
+
+def test_what_two_slabs_do_when_one_is_held_late_lies_between_their_data():
+    sides = [
+        {"of": "b0", "side": "left", "fixed": {"temperature": 290.0}, "from": 20.0},
+        {"of": "b1", "side": "right", "convection": {"beta": 100.0, "outside": 400.0}},
+    ]
+    found, steady = slabs([0.002, 0.006, 0.011], sides), slabs([0.002, 0.006, 0.011], [{**side, "from": 0.0} for side in sides])
+    assert found[-1] == pytest.approx(steady[-1], abs=0.5) and found.max() < 340.0
+
+
+def test_a_neighbour_that_leaves_a_slab_uncovers_it_and_no_more():
+    """The area that exchanges doubles then; temperatures went by it, and jumped."""
+    air = {"convection": {"beta": 180.0, "outside": 400.0}}
+    sides = [{"of": "b0", "side": "left", **air}, {"of": "b0", "side": "right", "from": 20.0, **air}]
+    found = slabs([0.002, 0.006, 0.011], [{"of": "b0", **air}], [{"between": ["b0", "b1"], "conductance": 0.0, "until": 20.0}])
+    np.testing.assert_allclose(found, slabs([0.002, 0.006], sides), atol=2e-3)
