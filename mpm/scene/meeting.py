@@ -50,6 +50,7 @@ def plan_meetings(experiment, sides) -> Meets:
     """What can meet, from the config alone; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
     names, grid, B = list(experiment.bodies), experiment.grid, len(experiment.bodies)
     outlines, boxes, travels = reaches(experiment)
+    flung = any(tool.until is not None and tool.until < experiment.time.end for tool in experiment.tools.values())  # what one held flies as fast as it likes
     walls, stops, pairs, links = np.full((B, 3, 2), CONTACT), np.full((B, 3, 2), -1.0), np.full((B, B), -1.0), np.zeros((B, B))
     for number, side in enumerate(sides):
         axis, upper, named = number // 2, number % 2, experiment.walls.get(side)
@@ -59,7 +60,7 @@ def plan_meetings(experiment, sides) -> Meets:
             gap = (grid.size[axis] - high[axis] if upper else low[axis]) / grid.cell
             if side == "axis" or (acts != "contact" and gap <= AT and not behind(experiment, names[b], axis, upper)):
                 walls[b, axis, upper] = kind
-            elif acts == "contact" or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
+            elif acts == "contact" or flung or gap * grid.cell < travels[b][axis, upper] + AROUND * grid.cell:
                 stops[b, axis, upper] = rubbing(named.friction) if named is not None else 0.0
     fields = np.zeros(B, np.int64)
     known = {frozenset(pair.between): pair for pair in experiment.contacts}

@@ -188,3 +188,12 @@ def test_a_resolved_config_with_tools_is_read_back():
     scene = pressed(1)
     experiment = mpm.load(scene)
     assert mpm.load(experiment.template()) == experiment and mpm.load(experiment.resolved()).run_id == experiment.run_id
+
+
+def test_what_a_tool_lets_go_meets_the_walls_that_no_one_named(plain):
+    """A bar pressed to 0.7 between two tools flies when one is taken away, to a side ten cells off: it ended as `unprepared`."""
+    scene = pressed(1, 0.3, F=0.7, n=8, end=14.0)
+    scene["tools"]["press"]["until"], scene["loads"], scene["grid"]["size"] = 8.5, [], [2.25]
+    scene["output"] |= {"every": 0.25, "observables": ["force.right_x"]}
+    (run,) = plain([scene])
+    assert run["kind"] == "completed" and run["series"]["position_max_x"].max() <= 2.25 + 0.01 / 8 and run["series"]["force_right_x"].min() < 0.0
