@@ -135,13 +135,13 @@ def corner_of(space, home):
 @kernel(inline=True)
 def meet_as_one(space, skin, found, i):
     """The mean place of the pieces that act as contact i with a wall, and the smallest of their gaps."""
-    total, s, axis, side = whole(found, skin.area, i), found.mates[i], found.against[i] // 2, found.against[i] % 2
+    part, s, axis, side = 1.0 / whole(found, skin.area, i), found.mates[i], found.against[i] // 2, found.against[i] % 2
     for a in range(directions(space)):
-        found.point[i, 0, a] *= skin.area[found.piece[i]] / total
+        found.point[i, 0, a] *= part * skin.area[found.piece[i]]
     while s >= 0:
         found.gap[i] = min(found.gap[i], before(space, axis, side, skin.x[s, axis]))
         for a in range(directions(space)):
-            found.point[i, 0, a] += skin.x[s, a] * skin.area[s] / total
+            found.point[i, 0, a] += part * skin.area[s] * skin.x[s, a]
         s = found.after[s]
 
 

@@ -151,7 +151,7 @@ def ready(space, problem, some, dt, warm, rows, inverse):
             problem.impulse[i, c] = remembered(contacts, i, c, warm, rows)
             before += problem.impulse[i, c] * contacts.normal[i, c]
         if not (live or before > 0.0):
-            speed(problem, i, D, u)
+            speed_of(problem, i, D, u)
             closing = 0.0
             for c in range(D):
                 closing += min(u[c] * contacts.normal[i, c], 0.0)
@@ -211,6 +211,12 @@ def speed(problem, i, D, u):
     for c in range(D):
         u[c] -= contacts.given[i, c]
     carry(problem.tools, contacts.free[i], u[:D])
+
+
+@kernel
+def speed_of(problem, i, D, u):
+    """The same, compiled once for those who ask seldom."""
+    speed(problem, i, D, u)
 
 
 @kernel(inline=True)

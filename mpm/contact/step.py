@@ -14,7 +14,7 @@ from mpm.contact.find import find_all, list_near
 from mpm.contact.found import BODY, NEAR, STRAY, others, whole
 from mpm.contact.held import hold
 from mpm.contact.skin import lay_skins
-from mpm.contact.solve import SURE, apart, pose, press, settle, speed
+from mpm.contact.solve import SURE, apart, pose, press, settle, speed_of
 from mpm.contact.sums import add_up, hold_good, make_room
 from mpm.contact.tools import arm, follow, move_tools, place_tools
 from mpm.contact.weights import WIDE, weigh
@@ -200,7 +200,7 @@ def keep_books(space, touching, skin, problem, pace):
             if b >= 0:
                 touching.pushed[b, BODY + a, c] -= impulse[i, c]
         if contacts.mu[i] > 0.0 and along > 0.0:
-            speed(problem, i, D, slip)
+            speed_of(problem, i, D, slip)
             for c in range(D):
                 touching.rubbed[0] -= (impulse[i, c] - along * contacts.normal[i, c]) * slip[c]
         for c in range(3):
