@@ -19,7 +19,7 @@ LEAST = {"rigid": 1.5e-3, "moving": 1.5e-3}  # s of the smallest run, set-up and
 STEP = {1: 25e-9, 2: 35e-9, "axisymmetric": 45e-9, 3: 65e-9}  # s a particle: elastic, without heat
 INCREMENTS = 0.8  # of STEP more with FLIP, whose increments go over the grid beside velocities: slump.yaml takes 0.61 s with APIC, 0.8 with affine FLIP
 SKIN = 60e-9  # s a piece of surface and step near something: its place, and what it is before
-MET = {1: 1e-6, 2: 1e-6, "axisymmetric": 1e-6, 3: 6e-6}  # s a piece that meets something and step: gap, weights, impulses (mpm.contact)
+MET = 1e-6  # s a piece that meets something and step: gap, weights, impulses (mpm.contact); in space 0.5 to 1.0 of this beside runs that meet nothing
 LOCKING = 1.0  # of STEP more with F-bar, whose averages go over the grid and back
 WARM, FLOW = 15e-9, {"radial": 35e-9, "clipped": 150e-9}  # s a particle more where deformation and temperature meet, and where it flows
 ALONE = {"step": 3e-6, "block": 50e-6, "heat": 80e-6, "output": 230e-6, "near": 30e-6, "synced": 0.7e-3}  # s, whatever the number of particles
@@ -193,7 +193,7 @@ def meeting(experiment, scene, particles: int, steps: int, sound: float) -> floa
         return 0.0
     finer = (particles / sum(len(body.particles.m) for body in scene.wholes)) ** (1 - 1 / experiment.grid.directions)
     pieces, met = finer * int(scene.meeting.touching.first[-1]), finer * sum(part * some for part, some in found)
-    each = share * (ALONE["near"] + pieces * SKIN) + met * MET[experiment.grid.dimension]
+    each = share * (ALONE["near"] + pieces * SKIN) + met * MET
     return (steps + 2 * outputs(experiment)) * each + outputs(experiment) * share * ALONE["synced"]
 
 
