@@ -59,7 +59,7 @@ TABLE = [
     ("temperature.mean", "θ", "K", SERIES, "mean temperature, weighted with the heat capacity at the start"),
     ("temperature.min", "θ", "K", SERIES, "lowest temperature"),
     ("temperature.max", "θ", "K", SERIES, "highest temperature"),
-    ("heat.total", "H", "J", SERIES, "heat content above the reference temperature"),
+    ("heat.total", "H", "J", SERIES, "heat content above that at the start"),
     ("heat.exchanged", "Q", "J", SERIES, "heat taken in through surfaces and given by sources since the start"),
     ("heat.ledger", "", "J", SERIES, "heat content gained less heat taken in: what the method lost"),
     ("mass.total", "m", "kg", SERIES, "total mass"),

@@ -101,7 +101,7 @@ def beyond(part: Part) -> list[float]:
     return [float(over / span) if over > 1e-9 * system.hottest else 0.0 for over in worst]
 
 
-def series_of(part: Part, shown: int, reference: float) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:
+def series_of(part: Part, shown: int, reference: float | None) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:
     """Series of each body of a group, and the heat that passed through each of its joints."""
     n, zero = len(part.members), part.system.zero
     joints = getattr(part.system, "joints", ())
@@ -114,7 +114,8 @@ def series_of(part: Part, shown: int, reference: float) -> tuple[list[dict[str, 
         inside = sum(((joint.second == b) * 1.0 - (joint.first == b)) * flow for joint, flow in zip(joints, passed, strict=True))
         each.append({
             "temperature.mean": found["mean"][:, b] + zero, "temperature.min": found["least"][:, b] + zero, "temperature.max": found["most"][:, b] + zero,
-            "heat": heat + content(system, zero, reference), "heat_exchanged": taken, "heat_ledger": (heat - begin[b]) - (taken + inside),
+            "heat": heat + content(system, zero, system.start if reference is None else reference), "heat_exchanged": taken,
+            "heat_ledger": (heat - begin[b]) - (taken + inside),
         })  # fmt: skip
     return each, passed
 

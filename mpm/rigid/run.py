@@ -140,7 +140,7 @@ def solve(
     times       output times [s], any; probes {name: x}, thresholds [(probe name, temperature [K])]
     method      Method; stop(fraction, time) -> True ends the run with outcome `budget`
     snapshots   (times (S,), points (P, d)): temperatures there in `RigidRun.snapshots`, nan outside the bodies
-    reference   temperature at which heat content counts as zero [K]; the first body's start unless given
+    reference   temperature at which heat content counts as zero [K]; each body's start unless given
     keeper      mpm.memory: the run goes on where it was cut, with the same bits
     joints      mpm.rigid.group.Joint of every pair that touches; those that conduct are solved together
     Heat is in J (per m2 in 1-D, per m in 2-D, per radian axisymmetric; mpm.runner makes the latter whole).
@@ -151,7 +151,6 @@ def solve(
     axisymmetric = space == "axisymmetric"
     dimension = 2 if axisymmetric else int(space)
     origin = np.zeros(dimension) if origin is None else np.broadcast_to(np.asarray(origin, dtype=float), dimension)
-    reference = bodies[0].temperature if reference is None else reference
     times = np.asarray(times, dtype=float)
     places = np.array([np.atleast_1d(x) for x in probes.values()], dtype=float).reshape(-1, dimension)
     owner = np.argmin([body.shape.distance(places) for body in bodies], axis=0) if len(places) else np.zeros(0, dtype=int)
