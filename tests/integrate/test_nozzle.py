@@ -205,7 +205,8 @@ def test_implicit_steps(weight):
 
 @pytest.mark.slow
 def test_a_jet_pushes_on_a_wall_with_its_momentum():
-    """A plane jet that a wall turns by 90 degrees: rho A v^2, half of it in symmetry, in the mean over its ringing."""
+    """A plane jet that a wall turns by 90 degrees: rho A v^2, half of it in symmetry, in the mean over its ringing once the blow with which it comes on,
+    2.7 times that, is 0.2 s past: 0.96 of it to 1.2 s, 1.05 to 3 s."""
     data = {
         "grid": {"dimension": 2, "size": [1.0, 0.8], "cell": 0.05},
         "bodies": {"jet": {"shape": {"box": {"lower": [0.0, 0.6], "upper": [0.1, 0.8]}}, "material": "m", "inflow": {"velocity": [0, -1.0], "until": 2}}},
@@ -213,7 +214,7 @@ def test_a_jet_pushes_on_a_wall_with_its_momentum():
         "walls": {"bottom": {"contact": {}}}, "time": {"end": 1.2}, "output": {"every": 0.05},
     }  # fmt: skip
     run = run_of(data)
-    assert run.series["force_bottom_y"][13:].mean() == pytest.approx(0.1, rel=0.05)
+    assert run.series["force_bottom_y"][17:].mean() == pytest.approx(0.1, rel=0.05)
 
 
 def test_a_sweep_over_what_flows_in(tmp_path):
