@@ -102,7 +102,7 @@ def test_a_raw_pancake_spreads_to_where_its_yield_stress_holds_it():
 @pytest.mark.parametrize(("M", "least", "most"), [(28.0, -0.01, 0.01), (14.0, -0.05, 0.0)])
 def test_batter_let_go_on_a_wall_that_it_sticks_to(M, least, most):
     """60 mL, 30 mm in radius, cells of 1.5 mm: as wide as the ways to stretch where the front is three cells high, 3 to 4 % short where it is one and a half
-    (1 to 3 % with 1 mm); heights to 4 %. What rolls down on a mirror wall is held a third of a cell above it, and comes 5 to 8 % too far."""
+    (1 to 3 % with 1 mm); heights to 4 %. What rolls down on a mirror wall is held a third of a cell above it: 4 to 8 % too wide."""
     wall = {"contact": {"friction": float("inf")}}
     scene = {
         "grid": {"dimension": "axisymmetric", "size": [0.072, 0.036], "cell": 1.5e-3},
