@@ -5,6 +5,7 @@ To add    a module with a `main`, its line below, and where its figures stand in
 
 Files
     affine         affine FLIP over random arrangements
+    contact_parts  what each part of contact takes
     contact_sheet  all pictures of all scenes and studies, to look at one by one
     costs          what `mpm plan` says a point costs, beside what it costs
     coupled        one whole step of 1-D thermoelastic particles as a matrix, and its spectral radius

@@ -179,8 +179,8 @@ def landing(threads: str) -> dict:
     return found | {"touching": bool(made.clock.touching), "particles": made.particles, "bits": bits}
 
 
-def lying(dtype: str = "f64") -> dict:
-    """Medians of rounds in turn; every step has contacts, or none."""
+def on_floor(dtype: str) -> dict:
+    """The cube by contact, sliding, and by a mirror: a Bench each."""
     from mpm.study.phases import Bench
 
     made = {}
@@ -191,6 +191,12 @@ def lying(dtype: str = "f64") -> dict:
             "materials": {"rubber": {"density": 1000, "elastic": {"hencky": {"E": 1e5, "nu": 0.3}}}}, "time": {"end": 1},
             "method": {"precision": {"f32": "float32", "f64": "float64"}[dtype]},
         }))  # fmt: skip
+    return made
+
+
+def lying(dtype: str = "f64") -> dict:
+    """Medians of rounds in turn; every step has contacts, or none."""
+    made = on_floor(dtype)
     times: dict[str, list[float]] = {name: [] for name in made}
     for _ in range(ROUNDS):
         for name, bench in made.items():
