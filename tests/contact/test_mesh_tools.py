@@ -36,14 +36,15 @@ def alike(one, other, rel):
 
 @pytest.mark.slow
 def test_a_mesh_is_the_box_that_it_is(plain):
-    """As a tool that presses, slides and turns: to rounding. As the body under it too, but for the order of its pieces, in which impulses are swept."""
+    """As a tool that presses, slides and turns: to 1e-8, as pieces bear more than nodes can tell apart, and sweeps over them make rounding grow (to 3e-9; to 2e-8
+    where they end at 1e-9 in place of 3e-3). As the body under it too, but for the order of its pieces, in which impulses are swept."""
     tool, body = copy.deepcopy(PRESSED), copy.deepcopy(PRESSED)
     tool["tools"]["press"]["shape"] = as_mesh(PRESSED["tools"]["press"]["shape"])
     body["bodies"]["block"]["shape"] = as_mesh(PRESSED["bodies"]["block"]["shape"])
     box, by_tool, of_body = plain([PRESSED, tool, body])
     assert all(run["kind"] == "completed" for run in (box, by_tool, of_body))
     assert abs(box["series"]["force_press_z"][-1]) > 0.01 and abs(box["series"]["torque_press_z"][-1]) > 1e-5
-    alike(by_tool, box, 1e-9)
+    alike(by_tool, box, 1e-8)
     alike(of_body, box, 0.03)
 
 
