@@ -36,8 +36,8 @@ def alike(one, other, rel):
 
 @pytest.mark.slow
 def test_a_mesh_is_the_box_that_it_is(plain):
-    """As a tool that presses, slides and turns: to 1e-8, as pieces bear more than nodes can tell apart, and sweeps over them make rounding grow (to 3e-9; to 2e-8
-    where they end at 1e-9 in place of 3e-3). As the body under it too, but for the order of its pieces, in which impulses are swept."""
+    """As a tool that presses, slides and turns: to 1e-8, as pieces bear more than nodes can tell apart, and sweeps over them make rounding grow (to 3e-9; to
+    2e-8 where they end at 1e-9 in place of 3e-3). As the body under it too, but for the order of its pieces, in which impulses are swept."""
     tool, body = copy.deepcopy(PRESSED), copy.deepcopy(PRESSED)
     tool["tools"]["press"]["shape"] = as_mesh(PRESSED["tools"]["press"]["shape"])
     body["bodies"]["block"]["shape"] = as_mesh(PRESSED["bodies"]["block"]["shape"])
