@@ -8,7 +8,6 @@ import sys
 from mpm import compiling
 from mpm.contact.block import advance_block
 from mpm.costs import settled
-from mpm.implicit.drive import first_pair
 from mpm.outcome import COMPLETED, outcome
 from mpm.records.provenance import cores
 from mpm.scene.build import build
@@ -69,6 +68,8 @@ def compile_step(experiment) -> None:
     """Compile the mechanical step, by a block of no steps; an implicit one by the first that a run tries, without heat."""
     scene, clock = at_start(experiment)
     if scene.implicit is not None:
+        from mpm.implicit.drive import first_pair  # scipy, which explicit runs do without
+
         first_pair(scene, clock, work_arrays(scene), lambda *_: outcome(COMPLETED))
         return
     (advance_references if scene.references else advance_block)(scene, clock, work_arrays(scene), present_limits(scene, clock).step(), 0)
