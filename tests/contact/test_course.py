@@ -37,7 +37,7 @@ def test_free_fall_under_gravity_that_rises(plain):
         assert off[1] < 0.3 * off[0] and off[1] < 0.01 * 0.5
 
 
-@pytest.mark.parametrize("method", [{}, {"frame": "total"}, {"mechanics": "implicit"}])
+@pytest.mark.parametrize("method", [{}, {"frame": "total"}, pytest.param({"mechanics": "implicit"}, marks=pytest.mark.wide)])
 def test_work_of_gravity_that_grows_on_what_lies(plain, method):
     """A bar that rests and sags as gravity grows stores it all. By momentum alone a quarter was lacking, and in the total frame it was -65 times that."""
     scene = FREE | {"gravity": [over([0, 40.0], [0, -0.05])], "walls": {"left": "stick"}, "time": {"end": 40.0}, "method": method}

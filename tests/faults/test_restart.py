@@ -72,6 +72,7 @@ def test_a_body_between_a_hot_wall_and_a_hot_tool():
 
 
 @pytest.mark.plain
+@pytest.mark.wide
 def test_a_block_that_slides_on_a_floor():
     """What contacts keep while little moves goes on where it was."""
     experiment = mpm.load({
