@@ -97,7 +97,7 @@ class Exposure(NamedTuple):
 
 class Surface(NamedTuple):
     """Pieces of a body's surface that exchange heat, each at an offset from its particle (docs/physics.md 11).
-    What surrounds them (the last five) holds for one heat step: integrate/surroundings.py writes it where it changes in time or place.
+    What surrounds them (`beta` to `radiation`) and `exposure` hold for one heat step: integrate/surroundings.py writes it where it changes in time or place.
     """
 
     F: np.ndarray  # (R, D, D) total deformation gradient, in the grid's directions, of the particles that own pieces: carries areas and offsets (Nanson)

@@ -7,7 +7,7 @@ from typing import Any
 from mpm.config.explain import Finding
 from mpm.config.partial import MISSING, Unknown
 from mpm.config.problems import near
-from mpm.config.rules_scene import heats, moves, plain_names, vector
+from mpm.config.rules_scene import heats, hot, moves, plain_names, vector
 from mpm.config.shapes_fit import bounds, home, misfits
 
 MOST_SAMPLES, MOST_NAMED = 10**6, 4
@@ -80,21 +80,20 @@ def apart(experiment: Any) -> Iterator[Finding]:
     from mpm.records.variables import VARIABLES, dataset_name, of_probe
 
     seen = {variable: f"the probe {probe}" for probe in experiment.output.probes for variable in of_probe(probe) if variable not in VARIABLES}
-    hot = [(section, name) for section in ("walls", "tools") for name, one in getattr(experiment, section).items() if getattr(one, "heat", None) is not None]
-    met = {*(f"{one}_{two}" for one, two in combinations(experiment.bodies, 2)), *(name for _, name in hot)}
+    met = {*(f"{one}_{two}" for one, two in combinations(experiment.bodies, 2)), *(name for _, name in hot(experiment))}
     for one, two in combinations(experiment.bodies, 2):
         name, told = f"heat_{one}_{two}", f"the heat between {one} and {two}"
         if (other := seen.setdefault(name, told)) != told:
             yield Finding(("bodies", two), f"{other} and {told} would both be {name} in the dataset", "a body of another name", on_key=True)
-    for section, one in hot:
+    for section, one in hot(experiment):
         name, told = f"heat_{one}", f"the heat from {one}"
         if (other := seen.setdefault(name, told)) != told:
-            yield Finding((section, one), f"{other} and {told} would both be {name} in the dataset", "a probe or a body of another name", on_key=True)
+            yield Finding((section, one), f"{other} and {told} would both be {name} in the dataset", "a probe, tool or body of another name", on_key=True)
     for index, name in enumerate(experiment.output.observables):
         other = seen.setdefault(dataset_name(name), name)
         if other != name and name.removeprefix("heat.") not in met:
             said = f"{other} and {name} would both be {dataset_name(name)} in the dataset"
-            yield Finding(("output", "observables", index), said, "a probe or a body of another name", given=name)
+            yield Finding(("output", "observables", index), said, "a probe, tool or body of another name", given=name)
 
 
 def overview(experiment: Any) -> Iterator[Finding]:
@@ -125,7 +124,7 @@ def known(question: Callable[[Any], bool], experiment: Any) -> bool:
         return True
 
 
-def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, path: tuple = ()) -> Iterator[Finding]:
+def observable(experiment: Any, index: int, name: str, warm: bool, moving: bool, path: tuple = ()) -> Iterator[Finding]:
     """There is such an observable, and the scene has what it needs: the dimension, heat or motion, the probe, the body."""
     from mpm.records.variables import OBSERVABLES, fits, met, observable_exists, parts, probed, single, threshold
 
@@ -173,7 +172,7 @@ def observable(experiment: Any, index: int, name: str, hot: bool, moving: bool, 
         fitting = [word for word in words if fits(word, experiment.grid.dimension)]
         yield Finding(path, f"there is no such direction in dimension {experiment.grid.dimension}", fitting or "another observable", given=name)
     family = name.split(".", maxsplit=1)[0]
-    if family in ("temperature", "heat", "time_to", "area") and not hot and not (family == "area" and met(name)):
+    if family in ("temperature", "heat", "time_to", "area") and not warm and not (family == "area" and met(name)):
         yield Finding(path, "no body has heat", "a heat section in the material of a body", given=name)
     if family in OF_MOTION and not moving and ((name.rpartition(".")[0] if one else name) not in OF_MATTER or experiment.grid.dimension == 0):
         yield Finding(path, "no body is elastic, so nothing moves", "an elastic section in the material of a body", given=name)

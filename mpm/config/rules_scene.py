@@ -253,6 +253,11 @@ def heats(experiment: Any) -> bool:
     return any(item.heat is not None for item in used(experiment))
 
 
+def hot(experiment: Any) -> list[tuple[str, str]]:
+    """(section, name) of the walls and tools that have `heat`."""
+    return [(section, name) for section in ("walls", "tools") for name, one in getattr(experiment, section).items() if getattr(one, "heat", None) is not None]
+
+
 def walls(experiment: Any, side: str, item: Any) -> Iterator[Finding]:
     """There is such a wall in the dimension, and what could take heat from it."""
     sides = WALL_SIDES[experiment.grid.dimension]

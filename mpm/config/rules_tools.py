@@ -6,7 +6,7 @@ from typing import Any
 from mpm.config.boundary import WALL_SIDES
 from mpm.config.explain import Finding
 from mpm.config.problems import near
-from mpm.config.rules_scene import conducts, heats, moves, plain_names, vector
+from mpm.config.rules_scene import conducts, heats, hot, moves, plain_names, vector
 from mpm.config.shapes_fit import misfits
 from mpm.config.tools import SHAPES
 
@@ -72,8 +72,7 @@ def met(experiment: Any, index: int, name: str, *_: Any) -> Iterator[Finding]:
     bodies = list(experiment.bodies)
     pairs = {f"{a}_{b}": (a, b) for k, a in enumerate(bodies) for b in bodies[k + 1 :]}
     everything = [*WALL_SIDES[experiment.grid.dimension], *experiment.tools, *pairs]
-    hot = [name for things in (experiment.walls, experiment.tools) for name, one in things.items() if getattr(one, "heat", None) is not None]
-    known = [*hot, *pairs] if what == "heat" else list(experiment.tools) if what in ("travel", *BITES) else everything
+    known = [*(name for _, name in hot(experiment)), *pairs] if what == "heat" else list(experiment.tools) if what in ("travel", *BITES) else everything
     cold = [one for one in pairs.get(of, ()) if what == "heat" and experiment.materials[experiment.bodies[one].material].heat is None]
     if cold:
         said = f"{cold[0]} has no heat, so none passes between the two"

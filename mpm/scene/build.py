@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm.basis import BASES
 from mpm.boundary import extents
+from mpm.config.rules_scene import hot
 from mpm.config.shapes_fit import home
 from mpm.error import Motion
 from mpm.materials import Hencky
@@ -18,7 +19,7 @@ from mpm.scene.asked import unmet
 from mpm.scene.contents import by_nodes
 from mpm.scene.conventions import SIDES, STRAINS, spin_tensor
 from mpm.scene.course import course
-from mpm.scene.exchange import heated, pieces_of, refuse_absent
+from mpm.scene.exchange import pieces_of, refuse_absent
 from mpm.scene.fracture_surface import refuse_idle, surface_and_seams
 from mpm.scene.implicit import implicit, kinks
 from mpm.scene.inflow import by_owner, inflow, nozzle, sample_column, warmth
@@ -217,7 +218,7 @@ def build(experiment, exact=None, most: float = math.inf, points=None) -> Scene:
         names=names,
         bodies=bodies,
         surroundings=surroundings,
-        hot=heated(experiment),
+        hot=tuple(name for _, name in hot(experiment)),
         seams=seams,
         references=references,
         outlines=outlines,

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mpm.config.rules_scene import hot
 from mpm.heat.exchange import FIRMER, PENALTY
 from mpm.heat.programmes import Parts, Sine, bounds, during, spell, turns
 from mpm.integrate.surroundings import Act, HotWall, Surroundings
@@ -64,21 +65,16 @@ def acts_of(entry, pieces) -> list[Act]:
     return acts + [Act(pieces, emissivity=emissivity, sky=sky) for emissivity, sky in rates(entry, "grey") if most(emissivity) > 0]
 
 
-def heated(experiment) -> tuple[str, ...]:
-    """Names of the walls and tools that have `heat`."""
-    return tuple(name for things in (experiment.walls, experiment.tools) for name, one in things.items() if getattr(one, "heat", None) is not None)
-
-
 def hot_walls(experiment, sides) -> list[HotWall]:
     """Walls and tools that have `heat`; `sides` are the names of walls by number (mpm.scene.build.SIDES)."""
-    found, names = [], heated(experiment)
+    found, names = [], [name for _, name in hot(experiment)]
     for number, side in enumerate(sides):
         heat = getattr(experiment.walls.get(side), "heat", None)
         if heat is not None:
             acts = spell(1.0, getattr(experiment.walls[side], "from"), experiment.walls[side].until)
             found.append(HotWall(number // 2, number % 2, programme(heat.beta), programme(heat.temperature), acts, number=names.index(side)))
-    hot = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None]
-    return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name, number=names.index(name)) for name, heat in hot]
+    tools = [(name, tool.heat) for name, tool in experiment.tools.items() if tool.heat is not None]
+    return found + [HotWall(-1, -1, programme(heat.beta), programme(heat.temperature), tool=name, number=names.index(name)) for name, heat in tools]
 
 
 def twice(pieces: list[np.ndarray]) -> bool:

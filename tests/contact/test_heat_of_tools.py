@@ -100,6 +100,22 @@ def test_a_lumped_body_between_wall_tool_and_air():
     assert s["heat_exchanged"][-1] == pytest.approx(wall + press + air, rel=2e-3, abs=2e-3 * abs(wall))
 
 
+def test_a_lumped_cylinder_between_wall_and_tool():
+    """The same of a whole cylinder, not of a radian of it: pi R^2 beta_k int (T_k - T) dt."""
+    scene = pressed(kappa=1e4, beta=2.0, other=5.0, temperature=400.0, end=0.04, method={"heat": {"implicit": {"order": 2}}, "heat_step": 0.008})
+    scene["grid"] = {"dimension": "axisymmetric", "size": [0.5, 1.0], "cell": 0.125}
+    scene["bodies"]["bar"]["shape"] = {"cylinder": {"radius": 0.25, "height": 0.5, "base": [0, 0]}}
+    scene["tools"]["press"]["shape"] = {"cylinder": {"radius": 0.375, "height": 0.25, "base": [0, 0.5]}}
+    scene["walls"] = {"bottom": scene["walls"].pop("left")}
+    s = mpm.run_point(mpm.load(scene)).series
+    t, tau, steady = 0.04, 0.5 / 7.0, (2 * 400 + 5 * 320) / 7.0
+    integral = steady * t + (300 - steady) * tau * (1 - math.exp(-t / tau))
+    face = math.pi * 0.25**2
+    assert s["heat_bottom"][-1] == pytest.approx(face * 2 * (400 * t - integral), rel=5e-3)
+    assert s["heat_press"][-1] == pytest.approx(face * 5 * (320 * t - integral), rel=5e-3)
+    assert given(s, "bottom", "press") == pytest.approx(s["heat_exchanged"], rel=1e-12)
+
+
 def test_a_tool_that_is_taken_off_within_a_heat_step_gives_for_that_long():
     """It goes at half of the only heat step: the piece sees it for a part of that step, and the air for the rest."""
     method = {"heat": {"implicit": {"order": 2}}, "heat_step": 0.02}
